@@ -26,7 +26,7 @@ from ai.files import write_text
 from ai.training.config import PRESETS
 from ai.training.experiments import MEASURED, SABOTAGES, sabotaged
 from ai.training.loop import Training
-from game.scenes.train.cards import FILE
+from game.scenes.train.laboratory import FILE
 
 DECISIONS: Final = 100_000
 

@@ -45,29 +45,27 @@ def modules(folder):
 
 
 @cache
-def imports(path, everywhere=True, types=False):
-    """Full names that a file imports: anywhere in it, or only when it is itself imported; those of types as well."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    found = set()
-    nodes = [tree]
-    while nodes:
-        node = nodes.pop()
+def found_in(path):
+    """What a file imports: full names, each with whether a function does so, and whether it is for types alone."""
+    found, ahead = set(), [(ast.parse(path.read_text(encoding="utf-8")), False, False)]
+    while ahead:
+        node, late, typed = ahead.pop()
         if isinstance(node, ast.Import):
-            found.update(alias.name for alias in node.names)
+            found.update((alias.name, late, typed) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: a relative import hides which floor it comes from"
-            found.update(f"{node.module}.{alias.name}" for alias in node.names)
-        elif (everywhere or not is_function(node)) and (types or not is_type_checking(node)):
-            nodes.extend(ast.iter_child_nodes(node))
+            found.update((f"{node.module}.{alias.name}", late, typed) for alias in node.names)
+        else:
+            late |= isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+            typed |= isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING"
+            within = (each for each in ast.iter_child_nodes(node) if not isinstance(each, ast.expr))
+            ahead.extend((each, late, typed) for each in within)
     return found
 
 
-def is_function(node):
-    return isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-
-
-def is_type_checking(node):
-    return isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING"
+def imports(path, everywhere=True, types=False):
+    """Full names that a file imports: anywhere in it, or only when it is itself imported; those of types as well."""
+    return {name for name, late, typed in found_in(path) if (everywhere or not late) and (types or not typed)}
 
 
 def is_within(name, packages):

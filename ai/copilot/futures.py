@@ -73,6 +73,11 @@ class Plan:
     shares: Doubles
     states: Doubles
 
+    @property
+    def ends(self) -> int:
+        """Physics steps flown when it has landed."""
+        return self.begin + DECISION_STEPS * len(self.actions)
+
     def push(self, here: Here) -> Push | None:
         """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
         number, between = divmod(here.steps - self.begin, DECISION_STEPS)

@@ -6,11 +6,14 @@ Judging only: what comes of a push is flown by `ai.copilot.futures`, beforehand 
 from __future__ import annotations
 
 from enum import IntEnum
+from math import inf
 from typing import Final, NamedTuple
 
 from ai.copilot.futures import KEYS, Future, Here, Known, Plan, Push
 
 _FARTHEST: Final = 12  # decisions of an action after which there must be a landing, with the dial at 1
+_PATIENCE: Final = 180  # steps by which the landing may be put off, from the first correction on
+_CALM: Final = 8  # decisions in a row without a correction, after which that begins anew
 
 
 class ActionSource(IntEnum):
@@ -46,6 +49,8 @@ class Guardian:
 
     def __init__(self) -> None:
         self.plan: Plan | None = None
+        self._due = inf  # physics steps flown when it must have landed, as long as corrections follow each other
+        self._calm = 0  # decisions in a row without a correction
 
     def knows(self, here: Here, asked: Push, known: Known) -> bool:
         """Whether it is known what comes of a push: it was flown ahead, or the held plan begins with it."""
@@ -62,14 +67,23 @@ class Guardian:
         What the pilot asks for passes if a landing plan begins with it, which is held from now on; else as little as
         will do is corrected, with all thrust if `whole`; else the plan that is held flies on. Without any plan, the
         pilot flies. What is not `known` in time counts as lost, which never is a risk while a plan is held.
+
+        Keys that are held could so keep a craft in the air for ever: pushed, saved, pushed again. From the first
+        correction on, a landing that was in sight may be put off by three seconds; what lands later passes no more.
         """
         offers, head = self._offers(here, asked, network, whole)
         futures = {push: Future(self.plan) if push == head else known.get(push, Future(None)) for push in offers}
-        landing = [push for push, future in futures.items() if future.plan]
-        if not landing:
+        plans = {push: future.plan for push, future in futures.items() if future.plan and future.plan.ends <= self._due}
+        if not plans:
             return Choice(asked)
-        push = next((push for push in landing if futures[push].lasts), landing[0])
-        self.plan = futures[push].plan
+        push = next((push for push in plans if futures[push].lasts), next(iter(plans)))
+        self.plan = plan = plans[push]
+        corrected = offers[push] is not ActionSource.PILOT
+        self._calm = 0 if corrected else self._calm + 1
+        if self._calm >= _CALM:
+            self._due = inf
+        elif corrected or self._due < inf:
+            self._due = min(self._due, plan.ends + _PATIENCE)
         return Choice(push, offers[push], held=True)
 
     def _offers(
@@ -81,7 +95,7 @@ class Guardian:
         """
         head = self.plan.push(here) if self.plan else None
         if head is None:
-            self.plan = None
+            self.plan, self._due = None, inf
         best, own = head or network, KEYS[asked.action] if whole else asked
         offers = {asked: ActionSource.PILOT}
         offers.setdefault(Push.of(own.main, best.side), ActionSource.PILOT_MAIN)

@@ -21,6 +21,7 @@ from ai.sweep.study import Asked, Files, FinishedTrial, Study
 from ai.sweep.trial import Trial, check_ready, fingerprint
 
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
+MOST_LOST: Final = 100  # trials that could not be made, after which no other is begun
 _TURN: Final = 0.2  # seconds after which a wait for workers looks around
 
 
@@ -88,7 +89,8 @@ class Driver:
         """Run until all is done, nothing more can be, or the user says stop; raises OSError for a full disk."""
         study = self._study
         while not stop:
-            while len(self.jobs) < self._workers and (asked := self.search.next()):
+            room = self._workers if len(self.lost) < MOST_LOST else 0
+            while len(self.jobs) < room and (asked := self.search.next()):
                 study.begin(asked)
                 parent = None if asked.parent is None else study.trials[asked.parent]
                 self._start(_Job(asked, parent, study.runs_of(parent) if parent else {}))

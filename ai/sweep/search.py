@@ -129,7 +129,7 @@ class Search:
         return shares
 
 
-class Population:
+class Population(Search):
     """Population-based training (Jaderberg et al. 2017), in generations, in place of a `Search`.
 
     Every member of a generation trains for the same number of decisions. Then the worst quarter goes on with copies of
@@ -152,10 +152,6 @@ class Population:
             self._left.pop(0)
         return asked
 
-    def falls_behind(self, trial: FinishedTrial) -> bool:  # noqa: ARG002
-        """Return False: the worst are replaced when a generation ends."""
-        return False
-
     def tell(self, trial: FinishedTrial) -> None:
         """Pass over the end of a trial: the study has it."""
 
@@ -164,7 +160,7 @@ class Population:
         return {}
 
 
-def search_of(study: Study) -> Search | Population:
+def search_of(study: Study) -> Search:
     """Return what says which trials a study has left."""
     return Population(study) if study.plan.search == POPULATION else Search(study)
 

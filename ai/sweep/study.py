@@ -119,7 +119,7 @@ class StudyFile:
     version: int = VERSION
     run: Annotated[str, Sized(200)] | None = None  # folder of the best run
     importance: dict[str, Share] | None = None  # share of each knob in setting the best trials apart
-    under_way: Annotated[tuple[Asked, ...], Sized(1000)] = ()
+    under_way: Annotated[tuple[Asked, ...], Sized(10_000)] = ()
 
     @classmethod
     def read(cls, folder: Path) -> Self:

@@ -21,6 +21,8 @@ from ai.training.history import PARTS
 CHARTS: Final = ("success", "mean_return", "loss", "epsilon")
 _ABOUT: Final = {rule.name: rule.about for rule in RULES}
 _MOST: Final = 0.5  # share of flights that are most of them
+_LANDS: Final = 0.8  # from which it is said to land
+_NEARLY_ALL: Final = 0.97
 _CHANGE: Final = 0.05  # of a share, from which it rises or falls
 _RETURN_CHANGE: Final = 10.0  # points of reward
 _LOSS_CHANGE: Final = 1.2  # times
@@ -92,6 +94,11 @@ def _held(run: RecentCurves) -> bool:
     return _stands(run) and bool(edits) and bool(edits[-1].after)
 
 
+def _learning(holds: Callable[[RecentCurves], bool]) -> Callable[[RecentCurves], bool]:
+    """Return whether a condition on the loss holds, of a run that learns now: else the number is an old one."""
+    return lambda run: not _stands(run) and holds(run)
+
+
 def _rises(column: str, by: float) -> Callable[[RecentCurves], bool]:
     """Return whether a curve is well above what it was, and its latest number not as far below its highest since."""
     return lambda run: (
@@ -141,10 +148,10 @@ def _split(run: RecentCurves) -> Mapping[str, float]:
 
 
 def _lands_for_little(run: RecentCurves) -> bool:
-    """Whether most flights land, and what is paid on the way takes most of that away."""
+    """Whether it lands, and what is paid on the way takes most of that away."""
     parts = run.history.parts[-1]
     known = abs(float(parts.sum()) - run.now("mean_return")) < _ROUNDED
-    return known and run.now("success") >= _MOST and run.now("mean_return") < _HALF * _split(run)["end"]
+    return known and run.now("success") >= _LANDS and run.now("mean_return") < _HALF * _split(run)["end"]
 
 
 def _random(run: RecentCurves) -> Mapping[str, float]:
@@ -174,7 +181,7 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("hovers", _most("timed_out")),
         CaptionRule("leaves", _most("out_of_bounds")),
         CaptionRule("none", lambda run: run.now("success") == 0.0),
-        CaptionRule("high", lambda run: run.now("success") >= 0.9 and run.last("success") >= 0.9, True),
+        CaptionRule("high", lambda run: min(run.now("success"), run.last("success")) >= _NEARLY_ALL, True),
         CaptionRule("rises", _rises("success", _CHANGE), True, _percent),
         CaptionRule("falls", _falls("success", _CHANGE), values=_percent),
         CaptionRule("steady", _steady, values=_percent),
@@ -192,11 +199,18 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("unknown", _unknown("loss")),
         CaptionRule("held", _held),
         CaptionRule("waits", _stands),
-        CaptionRule("explodes", _hint("loss_explodes")),
-        CaptionRule("news", lambda run: _loss_times(run) > _LOSS_CHANGE and _rises("success", _CHANGE)(run), True),
-        CaptionRule("rises", lambda run: _loss_times(run) > _LOSS_CHANGE),
-        CaptionRule("falls", lambda run: _loss_times(run) < 1 / _LOSS_CHANGE, True),
-        CaptionRule("steady", lambda run: 1 / _LOSS_CHANGE <= run.now("loss") / run.before("loss") <= _LOSS_CHANGE),
+        CaptionRule("explodes", _learning(_hint("loss_explodes"))),
+        CaptionRule(
+            "news",
+            _learning(lambda run: _loss_times(run) > _LOSS_CHANGE and _rises("success", _CHANGE)(run)),
+            True,
+        ),
+        CaptionRule("rises", _learning(lambda run: _loss_times(run) > _LOSS_CHANGE)),
+        CaptionRule("falls", _learning(lambda run: _loss_times(run) < 1 / _LOSS_CHANGE), True),
+        CaptionRule(
+            "steady",
+            _learning(lambda run: 1 / _LOSS_CHANGE <= run.now("loss") / run.before("loss") <= _LOSS_CHANGE),
+        ),
     ),
     "epsilon": (
         CaptionRule("all", lambda run: run.now("epsilon") == 1.0),

@@ -25,7 +25,7 @@ Verdict = Literal["as_well", "later", "never", "runs_away"]
 VERDICTS: Final[tuple[Verdict, ...]] = ("as_well", "later", "never", "runs_away")
 LANDS: Final = 0.8  # share of a hundred flights from which a run counts as one that lands
 _NEVER: Final = 0.3  # share below which it does not: near the pad, some land by chance
-_GRACE: Final = 1.5  # times as long as the twin took, after which it is judged
+_GRACE: Final = 2.0  # times as long as the twin took, after which it is judged
 _LATER: Final = 1.25  # times as long as the twin took, from which it came later
 _WORSE: Final = 0.15  # of a share that is worse than the twin's by more than chance
 _RUN_AWAY: Final = ("q_runs_away", "loss_explodes")  # rules of hints
@@ -143,15 +143,17 @@ class Flown(NamedTuple):
 
 
 def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | None:
-    """Return what came of an experiment so far; None while it is too early to say, or its twin does not land either.
+    """Return what came of an experiment; None while it is too early to say, or its twin does not land either.
 
     `failed` says that its training has diverged. It has run away if its mean Q-value or its loss has: see the hints.
     """
-    if failed or (len(other.history) and _has_run_away(other)):
+    if failed:
         return "runs_away"
     needed = healthy.landed_after()
-    if healthy.turns < _GRACE * needed:
+    if min(healthy.turns, other.turns) < _GRACE * needed:
         return None
+    if _has_run_away(other):
+        return "runs_away"
     if np.nan_to_num(other.history["success"]).max(initial=0.0) < _NEVER:
         return "never"
     in_time = other.landed_after() <= _LATER * needed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
@@ -20,7 +20,7 @@ from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import NetworkState, SwarmState
+from ai.training.messages import DIVERGED, NetworkState, SwarmState
 from ai.training.run import resume as resume_run
 from ai.training.session import Session
 from ai.training.state import State
@@ -41,19 +41,27 @@ def live(
     resume: Path | None = None,
     clock: Callable[[], float] = time.monotonic,
     pay: Path | None = None,
+    pays: Sequence[Path] = (),
 ) -> Generator[tuple[Any, ...], Any, None]:
     """Train landers without end, as `Session.lead` does; every turn is one decision of all landers.
 
     The run is kept in `keep`. With `resume`, it goes on from a saved run, with the settings, seed and history of that.
     `clock` counts seconds. `pay` is a file of the player's own that pays in place of the usual pay; validations keep
-    that. Raises PilotError for what is wrong with it, ModelFormatError if there is nothing to resume from, and
+    that. A run that goes on is paid by its own file, if that is among the player's `pays`; else `lost` says that it is
+    not. Raises PilotError for what is wrong with it, ModelFormatError if there is nothing to resume from, and
     ValueError for settings that are not a lander's.
     """
     training = Training(config, seed) if resume is None else resume_run(Training, resume)
     training.clock = clock
     session = LanderSession(training, keep, resume)
+    if before := (training.around or {}).get("paid_by"):  # of a run that goes on
+        pay = next((each for each in pays if str(each) == before), None)
+        if pay is None:
+            unpaid = f"{Path(str(before)).name} paid it, and is not there: it goes on with the usual pay"
+            training.lost = "; ".join(filter(None, (training.lost, unpaid)))
     with ExitStack() as ends:
         if pay:
+            session.paid_by = str(pay)
             ends.callback(pay_by(session.env, pay))
         yield from session.lead()
 
@@ -78,6 +86,7 @@ class LanderSession(Session[Training]):
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.gradient_steps
         self._learned_from: set[str] = set()  # digests of demonstrations
+        self.paid_by = ""  # the player's own file, if not the usual pay
 
     @property
     def _checkpoint_every(self) -> int:
@@ -92,7 +101,7 @@ class LanderSession(Session[Training]):
     def state(self) -> State:
         return {
             "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
-            "learned_from": sorted(self._learned_from),
+            "learned_from": sorted(self._learned_from), "paid_by": self.paid_by,
         }  # fmt: skip
 
     def load_state(self, state: State) -> None:
@@ -179,7 +188,7 @@ class LanderSession(Session[Training]):
         values = agent.network.values.copy()
         if not np.isfinite(values).all():
             raise FloatingPointError(
-                f"the network was not finite after learning step {agent.gradient_steps}; "
+                f"the network was {DIVERGED} after learning step {agent.gradient_steps}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
         normalizer = agent.normalizer.to_json() if agent.normalizer else None

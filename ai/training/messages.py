@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ai.environment import Floats
 
 Command = tuple[Any, ...]
+DIVERGED: Final = "not finite"  # what a run says of its network that ended so
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import gettext
 import os
 import struct
 from collections.abc import Callable, Iterator
+from io import BytesIO
 from operator import index
 from pathlib import Path
 from typing import Any, Final
@@ -124,8 +125,8 @@ def _key(part: str) -> str | int:
 def _english(path: Path) -> Iterator[tuple[str, str, str]]:
     """Yield the name, the words, and the words for many or "", of every text in a compiled catalogue."""
     try:
-        with path.open("rb") as file:
-            found: dict[Any, str] = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]
+        file = BytesIO(path.read_bytes())
+        found: dict[Any, str] = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]
     except _DAMAGE as error:
         raise ValueError(f"{path} cannot be read") from error
     for key, words in found.items():  # of a text with a count, a key for each form: 0 for one, 1 for many

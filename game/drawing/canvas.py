@@ -161,30 +161,26 @@ class Canvas:
         Glows and translucent lines need a background, and do not show on it. A `spare` surface of the same size is
         used again: to clear it takes a tenth of the time of getting as much memory.
         """
-        sheet = copy(self)
-        sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
-        sheet._own()
-        sheet._covered, sheet._seen, sheet.explained = deque(maxlen=0), deque(maxlen=0), deque(maxlen=0)
-        if spare is not None and spare.get_size() == sheet.size:
-            spare.fill((0, 0, 0, 0))
-            sheet.surface = spare
+        size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
+        if spare is None or spare.get_size() != size:
+            spare = pygame.Surface(size, pygame.SRCALPHA)
         else:
-            sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
+            spare.fill((0, 0, 0, 0))
+        sheet = self._on(spare)
+        sheet.size = size
         return sheet
 
     def picture(self, width: float, height: float) -> Canvas:
         """Return a canvas at the same scale on its own opaque surface, to be copied as often as it is drawn."""
-        picture = copy(self)
-        picture._own()
-        picture._covered, picture._seen = deque(maxlen=0), deque(maxlen=0)
-        picture.surface = pygame.Surface(self.rect(0, 0, width, height).size)
-        return picture
+        return self._on(pygame.Surface(self.rect(0, 0, width, height).size))
 
-    def _own(self) -> None:
-        """Begin at the corner of a surface of its own, which is no part of the window."""
-        self.origin = (0, 0)
-        self.moved = (0.0, 0.0)
-        self.view, self._whole = PAGE.copy(), None
+    def _on(self, surface: pygame.Surface) -> Canvas:
+        """Return a canvas on a surface of its own, which is no part of the window; of it nothing is noted."""
+        own = copy(self)
+        own.surface, own.origin, own.moved = surface, (0, 0), (0.0, 0.0)
+        own.view, own._whole = PAGE.copy(), None
+        own._covered, own._seen, own.explained = deque(maxlen=0), deque(maxlen=0), deque(maxlen=0)
+        return own
 
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
         """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""
@@ -195,7 +191,7 @@ class Canvas:
         self._covered.append(area)
 
     def look_at(self, area: pygame.typing.RectLike) -> None:
-        """Note an area of the surface, in pixels, that a player looks at, for notes to avoid."""
+        """Note an area that a player looks at, likewise."""
         self._seen.append(pygame.Rect(area))
 
     @contextmanager
@@ -306,7 +302,7 @@ class Canvas:
         elif alpha >= 1:
             pygame.draw.aaline(self.surface, colour, start, end, thickness)
         else:
-            self._translucent(start, end, colour, thickness, alpha)
+            self._blit(*shapes.slanted(start, end, colour, thickness), alpha)
 
     def _straight(self, a: Point, b: Point, colour: Colour, thickness: int, alpha: float) -> None:
         left, top = round(min(a[0], b[0])), round(min(a[1], b[1]))
@@ -323,15 +319,6 @@ class Canvas:
             self.surface.fill(colour, area)
         elif area.width > 0 and area.height > 0:
             self._blit(shapes.plain(area.size, colour), area.topleft, alpha)
-
-    def _translucent(self, a: Point, b: Point, colour: Colour, thickness: int, alpha: float) -> None:
-        margin = thickness + 1
-        left, top = math.floor(min(a[0], b[0])) - margin, math.floor(min(a[1], b[1])) - margin
-        size = (int(abs(b[0] - a[0])) + 2 * margin + 2, int(abs(b[1] - a[1])) + 2 * margin + 2)
-        sheet = pygame.Surface(size, pygame.SRCALPHA)
-        sheet.fill((*colour, 0))
-        pygame.draw.aaline(sheet, (*colour, 255), (a[0] - left, a[1] - top), (b[0] - left, b[1] - top), thickness)
-        self._blit(sheet, (left, top), alpha)
 
     def dot(self, centre: Point, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Draw a filled anti-aliased circle, positioned to a quarter of a pixel."""

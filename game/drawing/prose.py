@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Final
@@ -12,6 +13,9 @@ from game.drawing.tokens import INK, SMALL, Colour
 from game.drawing.typeface import Weight
 
 _LONGEST: Final = 4000  # characters: more than fit on a screen
+_TOGETHER: Final = "\u00a0"  # where no line is broken: as a text says, and between a number and its unit
+_UNIT: Final = re.compile(r"(?<=\d) (?=(?:%|°|[kcm]?m/s²?|[km]?[smgN]|kg|min|h|rad|M|k)(?:[^\w]|$))")
+_BREAKS: Final = re.compile(r"[ \t\n]+")
 
 
 def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
@@ -21,13 +25,13 @@ def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
 
 def _broken(text: str, width: float, measure: Callable[[str], float]) -> list[str]:
     lines = [""]
-    for word in text[:_LONGEST].split():
+    for word in _BREAKS.split(_UNIT.sub(_TOGETHER, text[:_LONGEST]).strip()):
         longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and measure(longer) > width:
+        if lines[-1] and measure(longer.replace(_TOGETHER, " ")) > width:
             lines.append(word)
         else:
             lines[-1] = longer
-    return lines
+    return [line.replace(_TOGETHER, " ") for line in lines]
 
 
 @lru_cache(maxsize=1024)

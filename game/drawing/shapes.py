@@ -113,6 +113,17 @@ def _parts(length: int, wanted: int) -> list[tuple[tuple[int, int], tuple[int, i
     return [part for part in parts if part[1][0]]
 
 
+def slanted(
+    a: tuple[float, float], b: tuple[float, float], colour: Colour, thickness: int
+) -> tuple[pygame.Surface, tuple[int, int]]:
+    """Return an anti-aliased line between two places in pixels, and the corner where it is drawn."""
+    margin = thickness + 1
+    left, top = math.floor(min(a[0], b[0])) - margin, math.floor(min(a[1], b[1])) - margin
+    sheet = _sheet((int(abs(b[0] - a[0])) + 2 * margin + 2, int(abs(b[1] - a[1])) + 2 * margin + 2), colour)
+    pygame.draw.aaline(sheet, (*colour, 255), (a[0] - left, a[1] - top), (b[0] - left, b[1] - top), thickness)
+    return sheet, (left, top)
+
+
 @lru_cache(maxsize=256)
 def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
     """Return a filled rectangle for alpha blending."""

@@ -33,17 +33,16 @@ def draw_listing(
     source: Source,
     current: int | None = None,
     notes: Mapping[int, str] | None = None,
-    *,
-    notes_width: float = 0.0,
 ) -> None:
     """Draw the source in a box, in points; `current` is the number of the lit line, which is kept in sight.
 
-    `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They are drawn on
-    the right, in `notes_width` points; with 0, at the right edge behind the ends of those lines that leave the room.
+    `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They have a column
+    on the right, a third of the box.
     """
     area, notes = pygame.FRect(box), notes or {}
     letter = typeface.digit_width(canvas.grown(LABEL), "code")
-    room = int((area.width - _NUMBER - (notes_width + _BETWEEN if notes_width else 0.0)) // letter)
+    beside = area.width / 3 if notes else -_BETWEEN
+    room = int((area.width - _NUMBER - beside - _BETWEEN) // letter)
     leading = _LEADING * canvas.grown(LABEL) / LABEL
     canvas.text(source.path, (area.left, area.top + leading * 0.8), size=LABEL, colour=MUTE)
     top = area.top + leading * 1.4
@@ -59,16 +58,9 @@ def draw_listing(
         if begins:
             canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
                         colour=NET if lit else FAINT, align="right")  # fmt: skip
-            if notes_width and (note := notes.get(number)):
-                canvas.text(note, (area.right - notes_width, y), size=LABEL, colour=NET if lit else MUTE, tabular=True)
-        if (
-            not notes_width
-            and [row[0] for row in shown[place + 1 : place + 2]] != [number]
-            and (note := notes.get(number))
-        ):
-            left = area.right - 4 - canvas.text_width(note, size=LABEL)
-            if left > area.left + _NUMBER + len(text) * letter + _BETWEEN:
-                canvas.text(note, (left, y), size=LABEL, colour=NET if lit else MUTE)
+            if note := notes.get(number):
+                canvas.text(note, (area.right - beside, y), size=LABEL, colour=NET if lit else MUTE, tabular=True,
+                            room=beside)  # fmt: skip
         for part, colour, column in _coloured(text, lit):
             place_of = (area.left + _NUMBER + column * letter, y)
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)
@@ -102,16 +94,13 @@ def _coloured(text: str, lit: bool) -> Iterator[tuple[str, Colour, int]]:
         yield mark + comment, MUTE, len(code)
 
 
-def add_listing(column: Column, height: float, shown: Callable[[], Shown], beside: float = 0.0) -> None:
-    """Add a listing to a column, painted when what `shown` returns has changed; `beside` as `notes_width` is."""
+def add_listing(column: Column, height: float, shown: Callable[[], Shown]) -> None:
+    """Add a listing to a column, painted when what `shown` returns has changed."""
     cache = PaintCache()
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:
         source, current, notes = shown()
-        area, room = (0, 0, *box.size), min(beside, box.width / 3) if notes else 0.0
-        cache.draw(
-            canvas, box, (source, current, tuple(notes.items())),
-            lambda sheet: draw_listing(sheet, area, source, current, notes, notes_width=room),
-        )  # fmt: skip
+        shows = source, current, tuple(notes.items())
+        cache.draw(canvas, box, shows, lambda sheet: draw_listing(sheet, (0, 0, *box.size), source, current, notes))
 
     column.picture(height, draw)

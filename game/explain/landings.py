@@ -93,9 +93,9 @@ class RecentLandings:
         return replace(landings, after=tuple(after for after, _ in self._seen.values()))
 
 
-def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, width: float) -> None:
-    """Draw a row for each action: its name, and whether the network still lands; `top` is the first baseline."""
-    canvas.text(texts.LANDINGS_HEADING, (left, top), size=SMALL, colour=MUTE, room=width)
+def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, width: float, who: str) -> None:
+    """Draw a row for each action: its name, and whether `who` then flies still lands; `top` is the first baseline."""
+    canvas.text(texts.LANDINGS_HEADING.format(who=who), (left, top), size=SMALL, colour=MUTE, room=width)
     for action, after in enumerate(landings.after):
         y, flown = top + FIRST + ROW * action, action == landings.flown
         colour = INK if flown else MUTE

@@ -17,8 +17,6 @@ Indices = npt.NDArray[np.intp]
 Numbers = npt.NDArray[np.floating[Any]]
 
 _LOYALTY: Final = 2.0  # factor by which a unit must be stronger than a shown one to replace it
-_MEMORY: Final = 0.95  # decay of a unit's average activity from one plan to the next
-_SILENT: Final = 0.1  # weight of a unit that is never active, relative to one of average activity
 _FAINTEST: Final = 0.02  # share of the largest link, below which a link is not drawn
 
 
@@ -75,16 +73,16 @@ def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
     return [
         Edge(column, int(index) // ends, int(index) % ends, float(size[index] / largest), bool(signs[index]))
         for index in chosen
-        if size[index] > 0.02 * largest
+        if size[index] > _FAINTEST * largest
     ]
 
 
 class NetworkPlan:
     """Snapshot of a network for drawing: columns of shown units, and the weights of the links between them.
 
-    At most `most` units of a layer are shown: the most important by their weights and recent activity, with a
-    preference for those of the plan `before`; the units `pinned`, by stage and number, come first. Everything is
-    copied, so the network may change afterwards.
+    At most `most` units of a layer are shown: the most important by their weights, with a preference for those of the
+    plan `before`; the units `pinned`, by stage and number, come first. Everything is copied, so the network may change
+    afterwards.
     """
 
     def __init__(
@@ -100,13 +98,8 @@ class NetworkPlan:
         values, known = _values(network, observation, sizes)
         old = before if before and [column.total for column in before.columns] == sizes else None
         self.columns: list[Column] = []
-        self._activity = [np.abs(np.nan_to_num(each.astype(float), posinf=0.0, neginf=0.0)) for each in values]
         for stage, size in enumerate(sizes):
-            if old:
-                self._activity[stage] = _MEMORY * old._activity[stage] + (1 - _MEMORY) * self._activity[stage]
             strength = _strength(found, stage)
-            if 0 < stage < len(sizes) - 1:
-                strength = strength * _liveliness(self._activity[stage])
             wanted = strength.copy()
             wanted[[unit for at, unit in pinned if at == stage and unit < size]] = np.inf
             units = steady_choice(wanted, most, old.columns[stage].units if old else None)
@@ -118,15 +111,6 @@ class NetworkPlan:
         for link, left, right in zip(found, self.columns[:-1], self.columns[1:], strict=True):
             part = np.ix_(left.units, right.units)
             self._links.append((link.weights[part], link.gradient[part]))
-
-    def weight(self, layer: int, start: int, end: int) -> float:
-        """Return the weight of the link between two shown units, by their numbers; 0 if one is not shown."""
-        if layer >= len(self._links):
-            return 0.0
-        rows, columns = (
-            np.flatnonzero(self.columns[stage].units == unit) for stage, unit in ((layer, start), (layer + 1, end))
-        )
-        return float(self._links[layer][0][rows[0], columns[0]]) if len(rows) and len(columns) else 0.0
 
     def edges(self, show: Show, most: int) -> list[Edge]:
         """Return the `most` strongest links between each two columns, the faintest first."""
@@ -182,10 +166,3 @@ def _strength(found: Sequence[Link], stage: int) -> Numbers:
         to = np.linalg.norm(found[stage - 1].weights, axis=0) + 0 * found[stage - 1].bias if stage else 1.0
         strength: Numbers = np.asarray(away * to, float)
     return strength
-
-
-def _liveliness(activity: Numbers) -> Numbers:
-    """Return the units' activity relative to the average, so that inactive units count for little."""
-    average = float(activity.mean())
-    lively: Numbers = activity / average + _SILENT if average > 0 else np.ones(len(activity))
-    return lively

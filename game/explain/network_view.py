@@ -1,8 +1,8 @@
-"""Drawing of a network: its units in columns, the strongest links between them, and pulses along the links.
+"""Drawing of a network: its units in columns, and the strongest links between them.
 
 Blue adds and orange takes away, two colours that colour-blind eyes tell apart too. The drawing is cached on two
 sheets, one of light and one of signs, until the numbers change; then new sheets are painted, a few edges a step, and
-replace the old ones when finished. Only the pulses of learning are drawn every frame.
+replace the old ones when finished.
 """
 
 from __future__ import annotations
@@ -12,25 +12,30 @@ from collections.abc import Generator, Sequence
 from copy import copy
 from typing import Final
 
+import numpy as np
 import numpy.typing as npt
 import pygame
 
 from ai.nn import NeuralNetwork
 from game.core import texts
 from game.drawing import typeface
-from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import LABEL, SMALL
-from game.explain.network_painting import ADDS, LARGE, MARGIN, TAKES, Sheets, paint
+from game.drawing.canvas import Align, Canvas, Point
+from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
 from game.explain.network_plan import Column, Edge, NetworkPlan, Show
 from game.ui import plotting
 from game.ui.tooltip import TooltipRow, draw_tooltip
 
+Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
+
+_ADDS: Final = NET
+_TAKES: Final = EMBER
+_LARGE: Final = 300.0  # points of height from which there is room for values beside the names
+_MARGIN: Final = 8.0  # of the sheets around the box
+_CHUNK: Final = 9_000.0  # pixels of edges drawn in one step: about a millisecond
+_GLOWING: Final = 0.55  # units lit more than this shine on what is around them
 _PITCH: Final = 13.0  # points between units, at least
 _MOST_UNITS: Final = 24  # in a column
 _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
-_FLOW: Final = 1 / 90  # of an edge that a pulse travels in a sixtieth of a second
-_MOST_PULSES: Final = 26
-_GOLDEN: Final = 0.618034  # golden ratio: spreads the pulses' starts as evenly as possible
 
 
 class NetworkView:
@@ -51,11 +56,9 @@ class NetworkView:
         self.centres: list[list[Point]] = []  # of all units that are shown, in points
         self._canvas: Canvas | None = None  # for which the sheets were painted
         self._sheets: Sheets | None = None
-        self._spare: Sheets | None = None
         self._painting: Generator[None, None, Sheets] | None = None
-        self._stale = self._due = self._still = False
+        self._stale = self._due = False
         self._rested = 0
-        self._phase = 0.0
 
     # What is shown
 
@@ -90,7 +93,7 @@ class NetworkView:
         """Move to another box; a larger one shows more of the network."""
         if pygame.FRect(box) != self.box:
             self.box = pygame.FRect(box)
-            self._sheets = self._spare = self._painting = self.hovered = self._canvas = None
+            self._sheets = self._painting = self.hovered = self._canvas = None
             if self._given:
                 self.set(*self._given)
 
@@ -120,10 +123,6 @@ class NetworkView:
     def _places(self) -> list[tuple[int, int]]:
         return [(number, place) for number, column in enumerate(self.centres) for place in range(len(column))]
 
-    def weight(self, layer: int, start: int, end: int) -> float:
-        """Return the weight between two units of the network as it is shown, by their numbers; 0 if there is none."""
-        return self.plan.weight(layer, start, end) if self.plan else 0.0
-
     def name(self, number: int, place: int) -> str:
         """Return the name of a unit, given its column and its place in it."""
         unit = int(self.columns[number].units[place])
@@ -138,14 +137,9 @@ class NetworkView:
         """Return the names of a column's units, as far as they have any."""
         return self.inputs if number == 0 else self.outputs if number == len(self.columns) - 1 else ()
 
-    def update(self, at_once: bool = False) -> None:
-        """Advance by 1/60 s: pulses travel. With reduced motion, `at_once`, only the edges' brightness shows them.
-
-        If new sheets are due, part of them is painted.
-        """
+    def update(self) -> None:
+        """Advance by 1/60 s: if new sheets are due, part of them is painted."""
         self._rested += 1
-        self._still = at_once
-        self._phase = (self._phase + _FLOW) % 2.0
         self._due |= self._stale and self._rested >= _REST
         if self._canvas and self._due and self._painting is None:
             self._painting = self._paint(self._canvas)
@@ -159,7 +153,7 @@ class NetworkView:
             try:
                 next(self._painting)
             except StopIteration as done:
-                self._sheets, self._spare, self._painting = done.value, self._sheets, None
+                self._sheets, self._painting = done.value, None
 
     @property
     def busy(self) -> bool:
@@ -171,7 +165,7 @@ class NetworkView:
     @property
     def large(self) -> bool:
         """Whether there is room for values beside the names."""
-        return self.box.height >= LARGE
+        return self.box.height >= _LARGE
 
     @property
     def _foot(self) -> float:
@@ -214,49 +208,25 @@ class NetworkView:
     # The picture
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the network, and the pulses and the read-out over it."""
+        """Draw the network, and the read-out over it."""
         if self._sheets is None or self._sheets[0].scale != canvas.scale:
-            self._spare, self._canvas, self._painting = None, canvas, self._paint(canvas)
+            self._canvas, self._painting = canvas, self._paint(canvas)
             while self._painting:
                 self._go_on_painting()
-        corner = (canvas.px(self.box.x - MARGIN), canvas.px(self.box.y - MARGIN))
+        corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
         assert self._sheets is not None
         light, signs = self._sheets
         canvas.surface.blit(light.surface, corner, special_flags=pygame.BLEND_RGB_ADD)
         canvas.surface.blit(signs.surface, corner)
-        if self._show == "gradients" and not self._still:
-            self._draw_pulses(canvas)
         if self.hovered and self.reads_out:
             self._draw_tooltip(canvas, *self.hovered)
-
-    def _blank(self, canvas: Canvas) -> Sheets:
-        """Return empty sheets: the spare ones, or new ones."""
-        if self._spare is None or self._spare[0].scale != canvas.scale:
-            light, signs = (canvas.sheet(self.box.width + 2 * MARGIN, self.box.height + 2 * MARGIN) for _ in range(2))
-            light.surface = pygame.Surface(light.size)
-            return light, signs
-        light, signs = self._spare
-        light.surface.fill((0, 0, 0))
-        signs.surface.fill((0, 0, 0, 0))
-        signs.palette = canvas.palette
-        return light, signs
 
     def _paint(self, canvas: Canvas) -> Generator[None, None, Sheets]:
         """Return the painting of the network as it is now onto new sheets."""
         self.redraws += 1
-        return paint(copy(self), *self._blank(canvas))
-
-    def _draw_pulses(self, canvas: Canvas) -> None:
-        """Draw pulses that run backwards along the edges with the largest gradients."""
-        radius = max(1.4, 0.4 * self.radius)
-        for number, edge in enumerate(self.edges[-_MOST_PULSES:]):
-            along = (self._phase * (1.0, 1.5, 1.0)[number % 3] + _GOLDEN * number) % 1.0
-            (x0, y0), (x1, y1) = self.centres[edge.column][edge.start], self.centres[edge.column + 1][edge.end]
-            place = (x1 + (x0 - x1) * along, y1 + (y0 - y1) * along)
-            alpha = (0.35 + 0.65 * edge.size) * min(1.0, 6 * along, 6 * (1 - along))
-            colour = ADDS if edge.positive else TAKES
-            canvas.glow(place, 4 * radius, colour, 0.5 * alpha)
-            canvas.dot(place, radius, colour, alpha)
+        light, signs = (canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN) for _ in range(2))
+        light.surface = pygame.Surface(light.size)
+        return _paint_all(copy(self), light, signs)
 
     def _draw_tooltip(self, canvas: Canvas, number: int, place: int) -> None:
         column = self.columns[number]
@@ -267,3 +237,104 @@ class NetworkView:
             rows.append(TooltipRow(texts.NETWORK_VIEW_BIAS, plotting.compact(float(column.bias[place]) / unit)))
         head = self.name(number, place) + (texts.NETWORK_VIEW_DAMAGED if column.damaged[place] else "")
         draw_tooltip(canvas, self.centres[number][place], self.box, [head], rows)
+
+
+def _paint_all(view: NetworkView, light: Canvas, signs: Canvas) -> Generator[None, None, Sheets]:
+    """Paint a view onto empty sheets, in parts, and return them; it must not change meanwhile."""
+    plan, hovered = view.plan, view.hovered
+    centres = [[(x - view.box.x + _MARGIN, y - view.box.y + _MARGIN) for x, y in column] for column in view.centres]
+    if not plan or not centres:
+        middle = (_MARGIN + view.box.width / 2, _MARGIN + view.box.height / 2)
+        signs.text(texts.NETWORK_VIEW_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=view.box.width)
+        return light, signs
+    yield
+    drawn = 0.0
+    for edge in view.edges:
+        ends = centres[edge.column][edge.start], centres[edge.column + 1][edge.end]
+        _paint_edge(view, light, edge, ends)
+        drawn += math.dist(*ends) * light.scale
+        if drawn > _CHUNK:
+            drawn = 0.0
+            yield
+    yield
+    best, last = plan.best(), len(centres) - 1
+    for number, column in enumerate(plan.columns):
+        lights = plan.brightness(number).tolist()
+        for place, (centre, lit) in enumerate(zip(centres[number], lights, strict=True)):
+            tone = NET if number == last and place == best else INK if lit >= 0 else _TAKES
+            _paint_unit(view, light, signs, centre, abs(lit), tone, damaged=bool(column.damaged[place]))
+        _paint_names(view, signs, number, centres[number], best if number == last else None)
+    if hovered:
+        signs.marker("ring", centres[hovered[0]][hovered[1]], 2 * view.radius + 6, INK)
+    y, (adds, takes) = _last_line(view), texts.NETWORK_VIEW_LEGEND[view.show]
+    signs.pill((_MARGIN, y - 5, 9, 2), _ADDS)
+    signs.text(adds, (_MARGIN + 13, y), size=LABEL - 1, colour=MUTE)
+    word = signs.text(takes, (_MARGIN + view.box.width, y), size=LABEL - 1, colour=MUTE, align="right")
+    signs.pill((word.left - 13, y - 5, 9, 2), _TAKES)
+    return light, signs
+
+
+def _paint_edge(view: NetworkView, light: Canvas, edge: Edge, ends: tuple[Point, Point]) -> None:
+    strength = 0.10 + 0.62 * edge.size**1.5
+    if view.hovered:
+        touched = view.hovered in ((edge.column, edge.start), (edge.column + 1, edge.end))
+        strength = 0.35 + 0.65 * edge.size if touched else 0.25 * strength
+    wide = 0.7 + 1.3 * edge.size * min(1.0, view.box.height / _LARGE)
+    half = 0.5 / light.scale  # a line runs through the middles of pixels, a dot lies between them
+    start, end = ((x - half, y - half) for x, y in ends)
+    light.line(start, end, _dimmed(_ADDS if edge.positive else _TAKES, strength), wide)
+
+
+def _paint_unit(
+    view: NetworkView, light: Canvas, signs: Canvas, centre: Point, lit: float, tone: Colour, *, damaged: bool
+) -> None:
+    radius = view.radius
+    signs.dot(centre, radius + 0.9, NIGHT0)
+    signs.dot(centre, radius, NIGHT1)
+    if damaged:
+        signs.marker("cross", centre, 2.4 * radius, signs.palette.warn)
+        return
+    if lit > _GLOWING:
+        light.glow(centre, 4.2 * radius, tone, _GLOWING * lit)
+    signs.dot(centre, radius, FAINT, 0.75)
+    if lit > 0.02:
+        signs.dot(centre, radius, tone, lit**0.8)
+
+
+def _paint_names(view: NetworkView, signs: Canvas, number: int, centres: list[Point], best: int | None) -> None:
+    """Write names beside the units (with values, in a large drawing), and the unit counts below."""
+    column, names, size = view.columns[number], view.names(number), view.name_size
+    values = view.large and bool(np.isfinite(column.values).any())
+    side = view.radius + 6
+    align: Align
+    shift, align = (-side, "right") if number == 0 else (side, "left")
+    for place, unit in enumerate(column.units.tolist()):
+        if unit >= len(names):
+            break
+        x, y = centres[place][0] + shift, centres[place][1] + 0.36 * size - 7 * values
+        signs.text(names[unit], (x, y), size=size, colour=NET if place == best else MUTE, align=align)
+        if values:
+            figure = _figure(float(column.values[place]) / view.unit_of(number))
+            signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
+    shown = len(column.units)
+    if shown < column.total or not names:
+        words = texts.NETWORK_VIEW_ALL if shown == column.total else texts.NETWORK_VIEW_SOME
+        told = words.format(shown=shown, count=column.total)
+        signs.text(told, (centres[0][0], _last_line(view)), size=LABEL - 1, colour=MUTE, align="centre")
+
+
+def _last_line(view: NetworkView) -> float:
+    return _MARGIN + view.box.height - 3
+
+
+def _figure(value: float) -> str:
+    """Write a value in no more room than -99.99 takes."""
+    if abs(value) >= 1000:
+        return plotting.compact(value)
+    return f"{value:.{2 if abs(value) < 99.995 else 1}f}".replace("-", "−")
+
+
+def _dimmed(colour: Colour, strength: float) -> Colour:
+    """Return a colour dimmed to `strength`, for additive blending."""
+    red, green, blue = (round(min(max(strength, 0.0), 1.0) * part) for part in colour)
+    return red, green, blue

@@ -282,28 +282,14 @@ def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
         canvas.marker("triangle", place, 9, canvas.palette.warn)
 
 
-def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> float:
-    """Write who flies, with a lamp before it that shines to `reach` points; return the text's width in points."""
-    shape, colour, glow = lamp
-    canvas = canvas.at(0, -1)
-    middle = VIEW_SIZE[0] / 2
-    width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
-    spot = lamp_spot(width)
-    canvas.glow(spot, reach, colour, glow)
-    canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)
-    return width
-
-
-def lamp_spot(width: float) -> Point:
-    """Return the middle of the lamp before a title of that width."""
-    return VIEW_SIZE[0] / 2 - width / 2 - 8, 36.0
-
-
 def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
-    """Draw who flies at the top, over a line in their colour."""
-    canvas = canvas.at(0, -1)
-    half = max(90.0, draw_title(canvas, text, ("circle", colour, 0.8), reach=14.0) / 2 + 14)
-    line = (VIEW_SIZE[0] / 2 - half, 54, 2 * half, 2)
+    """Draw who flies at the top, with a lamp before it, over a line in their colour."""
+    canvas, middle = canvas.at(0, -1), VIEW_SIZE[0] / 2
+    width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
+    lamp, half = (middle - width / 2 - 8, 36.0), max(90.0, width / 2 + 14)
+    canvas.glow(lamp, 14.0, colour, 0.8)
+    canvas.marker("circle", lamp, 8, colour)
+    line = (middle - half, 54, 2 * half, 2)
     canvas.pill(line, FAINT, 0.5)
     canvas.pill(line, colour)
 
@@ -331,16 +317,38 @@ def draw_centred_bars(
         canvas.line((middle, y - 4), (middle, y + 4), MUTE)
 
 
-def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
-    """Draw the player's and the network's share of a flight; a share above zero never reads as 0 %."""
+def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float, who: str) -> None:
+    """Draw the player's share of a flight, and that of `who` else flew it; a share above zero never reads as 0 %."""
     you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
     if you:
         canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN, tabular=True)
     if you < 100:
-        network = texts.SHARE_NETWORK.format(percent=100 - you)
+        network = texts.SHARE_NETWORK.format(who=who, percent=100 - you)
         canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right", tabular=True)
     edge = width * human
     if human > 0:
         canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
     if human < 1:
         canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
+
+
+def rate_colour(canvas: Canvas, percent: float) -> Colour:
+    """Return the colour of a success rate; the colour of success only where most attempts succeed."""
+    return canvas.palette.good if percent > 50 else INK
+
+
+def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None:
+    """Draw the share of flights that have landed with its baseline at `corner`, and both counts; none before any."""
+    if landed + lost == 0:
+        return
+    (left, top), share = corner, f"{100 * landed / (landed + lost):.0f}"
+    figure = canvas.text(share, (left - 1, top), size=FIGURE, weight="light", tabular=True,
+                         colour=rate_colour(canvas, float(share)))  # fmt: skip
+    canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
+    counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
+    canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)
+    canvas.explain(
+        (left - 4, top - 30, 180, 58),
+        texts.EXPLAIN_LANDINGS,
+        lambda: texts.EXPLAIN_LANDINGS_NOW.format(landed=landed, all=landed + lost),
+    )

@@ -1,12 +1,13 @@
 """Film of a flight: its replay without text, drawn off screen and written frame by frame, as a GIF.
 
-It runs in a process of its own, which `game.export.export` controls.
+It runs in a process of its own, so that the window neither waits nor slows down.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
@@ -16,6 +17,7 @@ import pygame
 
 from game.core.clock import STEP
 from game.core.settings import Settings
+from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import COLOUR_SAFE, PALETTE
 from game.export.gif import Frame, GifWriter
@@ -99,3 +101,46 @@ def frames(
 def unfinished(path: Path) -> Path:
     """Return the path of a file while it is incomplete."""
     return path.with_name(f".{path.name}.part")
+
+
+class Export:
+    """Running export of a flight; call `poll` once a frame.
+
+    Args:
+        scene: makes the scene to film; a class or function at module level, so that another process can import it.
+        record: the flight to export.
+        path: the file to write.
+        colour_safe: whether to use the palette for colour-blind viewers.
+
+    Attributes:
+        path: the file, complete once this is `over` without a `problem`.
+        share: progress, 0 to 1.
+
+    """
+
+    def __init__(
+        self, scene: Callable[[Context, Record], Filmed], record: Record, path: Path, *, colour_safe: bool = False
+    ) -> None:
+        self.path, self.share = path, 0.0
+        self._worker = Worker(film, scene, record, path, colour_safe)
+
+    def poll(self) -> None:
+        """Update the progress."""
+        for drawn in self._worker.poll():
+            self.share = drawn.share
+
+    @property
+    def over(self) -> bool:
+        """Whether the export has ended, with or without success."""
+        return self._worker.state in (WorkerState.ENDED, WorkerState.FAILED)
+
+    @property
+    def problem(self) -> str:
+        """Reason why there is no file; empty during the export, after a cancellation and after success."""
+        return self._worker.problem
+
+    def close(self) -> None:
+        """Cancel the export and delete the unfinished file."""
+        self._worker.close(0.0)  # the window may go on: it waits for no goodbye
+        with suppress(OSError, ValueError):  # usually the process has deleted it already
+            unfinished(self.path).unlink()

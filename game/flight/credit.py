@@ -14,6 +14,7 @@ from game.core import texts
 from game.core.settings import Settings
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
+from game.flight.networks import sentence, who
 
 TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
 _ASSISTS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are told
@@ -74,13 +75,19 @@ class Credit:
         return self._shared or (self._flight.shared and not self._flight.over)
 
     @property
+    def who(self) -> str:
+        """Who flies when the person does not: the network, or their own pilot by its name."""
+        return who(self._flight.network)
+
+    @property
     def header(self) -> str:
         """Text that says who flies or, after the flight, who flew."""
         flight = self._flight
         if flight.over:
-            return texts.YOU_FLEW if flight.share == 1 else texts.BOTH_FLEW if flight.share else texts.NETWORK_FLEW
+            flew = texts.BOTH_FLEW if flight.share else texts.NETWORK_FLEW
+            return texts.YOU_FLEW if flight.share == 1 else sentence(flew, self.who)
         if flight.hand is StickHolder.NETWORK:
-            return texts.NETWORK_FLIES
+            return sentence(texts.NETWORK_FLIES, self.who)
         if flight.shared and flight.copilot:
             return texts.YOU_SHARE[flight.copilot.mode]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
@@ -157,6 +164,11 @@ class Credit:
         return "" if _OWN_HANDS.issuperset(self._named) else "assists"
 
     @property
+    def barred(self) -> str:
+        """The reason in a sentence, where there is one."""
+        return texts.NOT_COUNTED[self.bar].format(who=self.who)
+
+    @property
     def counts(self) -> bool:
         """Whether the person flew all of it, without handicap, changed gravity or assists that set it apart.
 
@@ -177,7 +189,7 @@ class Credit:
         if not self._rules.kept:
             return ""
         if self.bar:
-            return texts.NOT_COUNTED[self.bar]
+            return self.barred
         return texts.HELP_IS_ON if self.helped and not self._flight.over else ""
 
     @property
@@ -196,4 +208,4 @@ class Credit:
     def reason(self, reason: str) -> str:
         """Return the text below a card's title: `reason`, or why a landing does not count."""
         landed = self._flight.outcome is Outcome.LANDED
-        return texts.NOT_COUNTED[self.bar] if landed and self.bar else reason
+        return self.barred if landed and self.bar else reason

@@ -26,7 +26,7 @@ _DECISIONS: Final = 2  # decisions of the network per frame
 _STRIDE: Final = 10  # physics steps between positions of the path without thrust, computed at once
 _STRIDES: Final = 12  # positions per frame, so that a path is complete after a few
 _SECONDS: Final = 9.0
-_REACH, _STEP = 30.0, 0.02  # metres to both sides for which the ground's height is kept, and between two heights
+REACH, HEIGHT_STEP = 34.0, 0.02  # metres to both sides for which the ground's height is kept, and between two heights
 
 
 class Drift:
@@ -141,12 +141,12 @@ def _down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
 
 def surface_height(env: LanderEnv, x: float) -> float:
     """Return the height in metres of the surface at x: a pad, a hill or the plain; for drawing, many times a frame."""
-    ground, heights = _Latest.seen
+    ground, known = _Latest.seen
     if ground is not env.ground:
-        ground, heights = _Latest.seen = env.ground, _profile(env.ground)
+        ground, known = _Latest.seen = env.ground, heights(env.ground)
     if env.conditions.moves:  # one pad on a plain
         x -= float(env.pad_shift[0])
-    return heights[min(max(round((x + _REACH) / _STEP), 0), len(heights) - 1)]
+    return known[min(max(round((x + REACH) / HEIGHT_STEP), 0), len(known) - 1)]
 
 
 class _Latest:
@@ -156,7 +156,8 @@ class _Latest:
 
 
 @lru_cache(maxsize=8)
-def _profile(ground: Ground) -> list[float]:
-    """Return the ground's height at even steps."""
-    heights: list[float] = ground.height(np.arange(-_REACH, _REACH, _STEP)).tolist()
-    return heights
+@lru_cache(maxsize=8)
+def heights(ground: Ground) -> list[float]:
+    """Return the ground's height at even steps, `HEIGHT_STEP` metres apart, from `REACH` to the left on."""
+    found: list[float] = ground.height(np.arange(-REACH, REACH, HEIGHT_STEP)).tolist()
+    return found

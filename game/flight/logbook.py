@@ -17,6 +17,7 @@ from ai.files import append_line, brief, free_path, read_lines
 from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
 from game.core.names import LibraryError
+from game.core.settings import TOP_RUNG, Settings
 from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
@@ -196,6 +197,14 @@ def best_descent(entries: Iterable[Entry]) -> tuple[int, int]:
     """Return the most legs landed in one descent by the player alone, and its points; (0, 0) without any."""
     own = ((e.leg, e.total) for e in entries if e.course == DESCENT and e.landed and not e.bar)
     return max(own, default=(0, 0))
+
+
+def ladder_rung(settings: Settings, entries: Iterable[Entry]) -> int:
+    """Return the player's place on the ladder of starts, from 0; who has none yet gets one, by landings of before."""
+    if settings.rung < 0:
+        flown = [entry for entry in entries if entry.landed and entry.human > 0 and not entry.course]
+        settings.rung = min(TOP_RUNG, len(flown))
+    return settings.rung
 
 
 def best_alone(entries: Iterable[Entry]) -> int:

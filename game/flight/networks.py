@@ -12,6 +12,7 @@ from ai.agent.decision import Decision
 from ai.environment import Floats, Ints
 from ai.files import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS
 from game.core import texts
 from game.core.collection import looks_like_item
@@ -25,14 +26,8 @@ SCRIPTED: Final = "scripted"
 LANDER: Final = "lander"  # folder of the networks that come with the game
 PLAYERS: Final = "models"  # folder of the player's own networks
 PARTS: Final = ("config.json", "online", "target")  # a folder with none of these files is not a network
+Policy = Pilot  # who flies: a network, a scripted pilot, or the player's own
 _log = logging.getLogger("tranquility")
-
-
-class Policy(Protocol):
-    """Policy that chooses actions for a batch of landers."""
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Return actions (n,) for observations (n, 9); `held` (n,) are the previous actions."""
 
 
 @runtime_checkable
@@ -88,8 +83,39 @@ def word(name: str) -> str:
     return {SCRIPTED: texts.NETWORK_SCRIPTED, ANYWHERE: texts.NETWORK_ANYWHERE}.get(name, name)
 
 
+def who(policy: object) -> str:
+    """Return who flies, as the subject of a sentence: the network, or the player's own pilot by its file's name."""
+    path = getattr(policy, "path", None)
+    return path.name if path else texts.THE_NETWORK
+
+
+def sentence(text: str, flyer: str, **more: object) -> str:
+    """Return a sentence on who flies, as `who` or `flew` name them."""
+    words = text.format(who=flyer, **more)
+    return words if words.startswith(flyer) and flyer != texts.THE_NETWORK else words[:1].upper() + words[1:]
+
+
+def is_own(name: str) -> bool:
+    """Whether a flyer's name is that of a file of the player's own."""
+    return name.endswith(".py")
+
+
+def flew(name: str) -> str:
+    """Return who flew, as the subject of a sentence, by the name in a line of the logbook."""
+    return name if is_own(name) else texts.THE_NETWORK
+
+
+def pause_labels(name: str) -> tuple[str, str]:
+    """Return what leads to the networks, and to the pilots, while that one flies."""
+    if is_own(name):
+        return texts.PAUSE_TAKE_NETWORK, texts.PAUSE_PILOT.format(name=name)
+    return texts.PAUSE_NETWORK.format(name=word(name)), texts.PILOTS_OPEN
+
+
 def titled(name: str) -> str:
-    """Return a network as a sentence calls it."""
+    """Return a network, or a pilot, as a sentence calls it."""
+    if is_own(name):
+        return name
     return texts.NETWORK_EVERYWHERE if name == ANYWHERE else texts.NETWORK_TITLED.format(name=word(name))
 
 

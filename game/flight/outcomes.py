@@ -26,6 +26,7 @@ class OutcomeCard:
     reason: str
     figures: tuple[tuple[str, str, str], ...]
     human: float
+    who: str = ""  # else flew, as the subject of a sentence
     advice: str = ""
     assists: str = ""  # what made the flight easier
     bare: str = ""  # why help did not save a lost flight, and what would have
@@ -71,7 +72,7 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice, figures = texts.ADVICE.get(cause_of(env, slot).name, ""), flight_figures(env, slot)
     if outcome is not Outcome.LANDED:
-        return OutcomeCard(False, title, reason, figures, human, advice, intact=intact)
+        return OutcomeCard(False, title, reason, figures, human, advice=advice, intact=intact)
     met = qualities(env, slot)
     title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
     quality = texts.AND.join(texts.QUALITIES[name] for name in met).capitalize()

@@ -16,19 +16,7 @@ from game.flight.poses import Poses
 
 # Steps that an ended flight of a swarm stays visible.
 REST_STEPS: Final = 75
-# State of a swarm besides its environment.
-_KEPT: Final = (
-    "observation",
-    "since_end",
-    "landed",
-    "lost",
-    "fresh",
-    "touched",
-    "decision",
-    "decided",
-    "_age",
-    "steps",
-)
+_NOT_KEPT: Final = ("env", "policy", "poses")  # of a swarm's attributes, in a snapshot
 
 
 class Swarm:
@@ -98,13 +86,14 @@ class Swarm:
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything but the random streams, to be put back by `restore`."""
-        return {"env": self.env.snapshot(), **{name: copy(getattr(self, name)) for name in _KEPT}}
+        kept = {name: copy(value) for name, value in vars(self).items() if name not in _NOT_KEPT}
+        return {"env": self.env.snapshot(), "kept": kept}
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot of this swarm."""
         self.env.restore(snapshot["env"])
-        for name in _KEPT:
-            setattr(self, name, copy(snapshot[name]))
+        for name, value in snapshot["kept"].items():
+            setattr(self, name, copy(value))
         self.poses.take(np.ones(self.env.num_envs, dtype=bool))
 
     def _decide(self, due: Ints) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import count
 
+import numpy as np
+
 from ai.training.history import History
 
 
@@ -18,7 +20,12 @@ class EarlierRun:
 
 
 def put_beside(runs: list[EarlierRun], name: str, run: History) -> None:
-    """Add an earlier run, in place of one of its name, with the first line style that is free."""
+    """Add an earlier run, in place of one of its name, with the first line style that is free.
+
+    One that has no curve yet, as no flight has ended, is left out.
+    """
+    if not np.isfinite(run["success" if "success" in run.columns else "loss"]).any():
+        return
     run.checkpoints.clear()  # only its curves are shown, and there may be many such runs
     runs[:] = [each for each in runs if each.name != name]
     taken = {each.style for each in runs}

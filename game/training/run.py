@@ -48,6 +48,7 @@ class TrainingRun(OneAfterAnother):
         name: of the run, to tell it from others.
         runs: number of runs so far.
         pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
+        pays: all such files, one of which may have paid a run that goes on.
         config, seed, steps: of the current or last run; `steps` are 0 before it has reported them, or without end.
         history: of the current or last run.
         swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind; None before the first.
@@ -68,6 +69,7 @@ class TrainingRun(OneAfterAnother):
         self.kind, self.collection, self._keeps = kind, collection, keeps
         self.name, self.runs = "", 0
         self.pay: Path | None = None
+        self.pays: tuple[Path, ...] = ()
         self.config: Any = kind.config
         self.seed = 0
         self.earlier: list[EarlierRun] = []
@@ -137,7 +139,8 @@ class TrainingRun(OneAfterAnother):
         player, or ""; for a run that must wait, the note comes from `poll`.
         """
         self.leave()
-        if len(self.history):
+        again = (config, seed) == (self.config, self.seed) and not self.history.setting_changes
+        if resume is not None or not again:  # or else both curves would be the same
             put_beside(self.earlier, self.name, self.history)
         self._clear()
         self.config, self.seed = config, seed
@@ -156,7 +159,9 @@ class TrainingRun(OneAfterAnother):
                 self.collection.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        pay = {"pay": self.pay} if self.pay and resume is None else {}
+        pay: dict[str, Any] = {"pay": self.pay} if self.pay and resume is None else {}
+        if resume is not None and self.pays:
+            pay = {"pays": self.pays}
         self._worker = Worker(self.kind.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
@@ -321,7 +326,7 @@ class TrainingRun(OneAfterAnother):
         note = self.begin(config, seed, name=name)
         # It writes nothing to the disk: its twin has the place of the run without a name.
         self.twin, self.differing = TrainingRun(self.kind, self.collection, keeps=False), differing
-        self.twin.pace = self.pace
+        self.twin.pace, self.twin.pay = self.pace, self.pay
         self.twin.begin(experiment, seed)
         self._keep_in_step()
         return note

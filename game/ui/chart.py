@@ -24,7 +24,7 @@ from game.ui.tooltip import TooltipRow, draw_tooltip
 
 __all__ = ["RUN_STYLES", "Chart", "Series", "Tick"]
 
-Painted = tuple[Canvas, list[Numbers]]  # a sheet, and each run's value in every pixel column
+Painted = tuple[Canvas, Numbers]  # a sheet, and the current run's value in every pixel column
 
 _HEADER: Final = 24.0  # points from the top of the box to the highest grid line
 _FOOT: Final = 18.0  # points from the lowest grid line to the bottom of the box
@@ -79,11 +79,11 @@ class Chart:
         self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
         self.painted_latest: tuple[str, ...] = ()  # of each run, as the sheet was painted
         self._painted: Painted | None = None  # until the numbers or the window change
+        self._others: tuple[object, Canvas] | None = None  # the runs behind the current one, and what they look like
         self._stale = True
         self._rested = 0
 
     def move(self, box: pygame.FRect) -> None:
-        """Move to another box."""
         if box != self.box:
             self.box, self._painted = box, None
 
@@ -151,8 +151,7 @@ class Chart:
     def _set_limits(self) -> None:
         if self.fixed:
             return
-        start, end = self.x_range
-        shown = [run.y[(run.x >= start) & (run.x <= end)] for run in self.runs]
+        shown = [run.within(self.x_range) for run in self.runs]
         span = plotting.robust_range(np.concatenate(shown)) if shown else None
         if span is not None:
             self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
@@ -163,7 +162,6 @@ class Chart:
 
     @property
     def marker(self) -> float | None:
-        """The x of the marker; None without one."""
         return self._marker[0] if self._marker else None
 
     def hover(self, point: Point | None) -> None:
@@ -214,7 +212,6 @@ class Chart:
     # Drawing
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the chart, and the marker and the cursor over it."""
         if self._painted is None or self._painted[0].scale != canvas.scale:
             self._painted = self._paint(canvas)
         canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)
@@ -232,15 +229,26 @@ class Chart:
         self._paint_header(sheet, box)
         area = sheet.rect(*plot)
         axes = Axes(self.x_range, self._shown, self._goal)
-        traces = [trace_run(run, axes, area.width) for run in self.runs]
-        if any(np.isfinite(values).any() for values in traces):
+        if any(np.isfinite(run.within(self.x_range)).any() for run in self.runs):
             self._paint_grid(sheet, plot)
         else:
             self._paint_empty(sheet, plot)
-        for run, values in reversed(list(zip(self.runs, traces, strict=True))):
-            paint_run(sheet, area, run, values, axes)
+        if len(self.runs) > 1:
+            self._lay_others(sheet, area, axes)
+        values = trace_run(self.runs[0], axes, area.width) if self.runs else np.zeros(0)
+        if self.runs:
+            paint_run(sheet, area, self.runs[0], values, axes)
         paint_ticks(sheet, plot, self._ticks, self.x_range)
-        return sheet, traces
+        return sheet, values
+
+    def _lay_others(self, sheet: Canvas, area: pygame.Rect, axes: Axes) -> None:
+        """Draw the runs behind the current one, which are painted once, until any of them or the axes change."""
+        key = (*self.runs[1:], axes, tuple(area), sheet.scale)
+        if self._others is None or self._others[0] != key:
+            self._others = key, sheet.sheet(sheet.size[0] / sheet.scale, sheet.size[1] / sheet.scale)
+            for run in reversed(self.runs[1:]):
+                paint_run(self._others[1], area, run, trace_run(run, axes, area.width), axes)
+        sheet.lay(self._others[1], 0, 0)
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
         value = self.runs[0].last() if self.runs else None
@@ -278,10 +286,7 @@ class Chart:
 
     def _value_at(self, x: float) -> float | None:
         """Return the value of the current run's curve at x."""
-        traces = self._painted[1] if self._painted else []
-        if not traces:
-            return None
-        values = traces[0]
+        values = self._painted[1] if self._painted else np.zeros(0)
         start, end = self.x_range
         column = round((x - start) / (end - start) * (len(values) - 1))
         if not 0 <= column < len(values) or np.isnan(values[column]):

@@ -96,7 +96,6 @@ class Charts:
 
     @property
     def box(self) -> pygame.Rect:
-        """Bounding box of all charts, in points."""
         first, *others = (pygame.Rect(chart.box) for chart in self.charts)
         return first.unionall(others)
 
@@ -156,7 +155,6 @@ class Scrubber(Widget):
         self._charts, self._on_move, self._on_press, self._on_zoom = charts, on_move, on_press, on_zoom
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
-        """Whether a point is on any of the charts."""
         return self._charts.box.collidepoint(hover_x, hover_y)
 
     def press(self) -> Transition | None:

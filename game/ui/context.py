@@ -81,5 +81,4 @@ class Context:
 
     @property
     def settings_file(self) -> SettingsFile:
-        """The player's settings file."""
         return SettingsFile(self.user_dir)

@@ -73,9 +73,9 @@ class Series:
         dash: tuple[float, ...] = (),
         smooth: bool = True,
     ) -> None:
-        places, values = np.array(x, float).ravel(), np.array(y, float).ravel()
+        places, values = np.asarray(x, float).ravel(), np.asarray(y, float).ravel()
         places, values = places[: len(values)], values[: len(places)]
-        self.x: Numbers = places[np.isfinite(places)]
+        self.x: Numbers = places[np.isfinite(places)]  # a copy
         self.y: Numbers = values[np.isfinite(places)]
         self.name, self.colour, self.dash, self.smooth = name, colour, dash, smooth
 
@@ -85,9 +85,13 @@ class Series:
         return Series(self.x, heights, self.name, self.colour, self.dash, self.smooth)
 
     def same(self, other: Series) -> bool:
-        """Whether another run would be drawn the same."""
         alike = (self.name, self.colour, self.dash, self.smooth) == (other.name, other.colour, other.dash, other.smooth)
         return alike and np.array_equal(self.x, other.x) and np.array_equal(self.y, other.y, equal_nan=True)
+
+    def within(self, x_range: Limits) -> Numbers:
+        """Return the values of a part of the x axis."""
+        values: Numbers = self.y[(self.x >= x_range[0]) & (self.x <= x_range[1])]
+        return values
 
     def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
         """Return the finite point nearest to x; None if x lies more than `slack` outside the run."""

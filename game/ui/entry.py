@@ -54,7 +54,6 @@ class TextLine(UITextEntryLine):
         self.rest()
 
     def rest(self) -> None:
-        """Let go of a held key."""
         self._held: pygame.event.Event | None = None
 
     @property
@@ -138,7 +137,6 @@ class EntryRow(RowWidget):
 
     @property
     def text(self) -> str:
-        """The text in the entry."""
         return self.line.text
 
     @text.setter
@@ -146,7 +144,6 @@ class EntryRow(RowWidget):
         self.line.set(text)
 
     def begin(self) -> None:
-        """Start typing."""
         if not self.typing:
             self.typing = self._fresh = True
             self._before = self.line.text

@@ -82,16 +82,13 @@ class Form:
 
     @property
     def controls(self) -> Controls:
-        """The controls: what is held, and the device in use."""
         return self._context.controls
 
     @property
     def focused(self) -> Widget | None:
-        """The widget in focus."""
         return self.widgets[self._index] if self.widgets else None
 
     def add(self, widget: W) -> W:
-        """Add a widget and return it."""
         self.widgets.append(widget)
         return widget
 
@@ -110,7 +107,6 @@ class Form:
             self._index = max(0, min(self._index, place + max(0, len(new) - 1), len(self.widgets) - 1))
 
     def focus(self, widget: Widget) -> None:
-        """Move the focus."""
         self._index = self.widgets.index(widget)
 
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
@@ -122,7 +118,6 @@ class Form:
         return self._sounding(lambda: self._take(event, actions))
 
     def confirm(self) -> Transition | None:
-        """Press the focused widget."""
         return self._sounding(self._press)
 
     def _sounding(self, act: OnPress) -> Transition | None:
@@ -179,7 +174,6 @@ class Form:
         return None
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the widgets."""
         canvas = canvas.at(*self.anchor)
         for widget in self.widgets:
             widget.paint(canvas)
@@ -246,12 +240,10 @@ class Part:
 
     @property
     def focused(self) -> Widget | None:
-        """The widget in focus, if it is one of these."""
         focused = self._form.focused
         return focused if focused in self.widgets else None
 
     def add(self, widget: W) -> W:
-        """Add a widget and return it."""
         self.widgets.append(widget)
         return widget
 

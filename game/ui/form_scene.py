@@ -61,6 +61,5 @@ class FormScene(Scene):
         return self.form.update()
 
     def draw_hints(self, canvas: Canvas) -> None:
-        """Draw the rows of hints."""
         for row in self.hint_rows(canvas):
             row.draw(canvas)

@@ -51,7 +51,6 @@ class HintRow:
         return self.position[1] - _LINE
 
     def width(self, canvas: Canvas) -> float:
-        """Return the width of the row, in points."""
         _, widths = self._fitted(canvas)
         return _length(widths)
 

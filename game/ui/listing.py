@@ -85,7 +85,6 @@ class ListRow(RowWidget):
 
     @property
     def room(self) -> int:
-        """Number of rows that fit."""
         return max(1, int(self.box.height // self._pitch))
 
     def baseline(self, row: int) -> float:

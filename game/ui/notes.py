@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from itertools import product
 from typing import Final
 
+import numpy as np
+import numpy.typing as npt
 import pygame
 
 from game.drawing.canvas import Canvas
@@ -25,7 +27,8 @@ _COVER: Final = 0.96  # opacity of the panel, over any background
 _ACROSS: Final = (0.5, 0.25, 0.75, 0.0, 1.0)
 _DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.0, 0.875, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
 _WORDS: Final = 8  # times as bad as a picture are words that are hidden
-_PLACES: Final = tuple(product(_WIDTHS, _ACROSS, _DOWN))
+Place = tuple[float, float, float]  # of those three
+_PLACES: Final[tuple[Place, ...]] = tuple(product(_WIDTHS, _ACROSS, _DOWN))
 
 
 class Note:
@@ -51,34 +54,39 @@ class Note:
     def update(self, canvas: Canvas) -> None:
         """Advance by 1/60 s; move to where the note hides least of what the last frame's reader sees."""
         self._left = max(0, self._left - 1)
-        if not self._left:
-            return
+        if self._left and self._hidden(canvas, [self._place])[0]:
+            hidden = self._hidden(canvas, _PLACES)
+            if hidden[_PLACES.index(self._place)] > hidden.min():
+                self._place = _PLACES[hidden.argmin()]
+
+    def _hidden(self, canvas: Canvas, places: Sequence[Place]) -> npt.NDArray[np.int64]:
+        """Return how much a note would hide at each place, in pixels; of words, each counts more."""
         reading = canvas.reading
-
-        def cost(place: tuple[float, float, float]) -> int:
-            box = self._box_at(reading, place)
-            return _WORDS * _covers(reading, box, canvas.words) + _covers(reading, box, canvas.looked_at)
-
-        if cost(self._place):
-            covered = {place: cost(place) for place in _PLACES}
-            if covered[self._place] > min(covered.values()):
-                self._place = min(_PLACES, key=covered.__getitem__)
+        sizes = {widest: self._size(reading, widest) for widest in _WIDTHS}
+        boxes = np.array([_edges(reading.rect(*_box(reading, place, sizes[place[0]]))) for place in places])[:, None]
+        areas = np.array([_edges(area) for area in (*canvas.words, *canvas.looked_at)], np.int64).reshape(-1, 4)
+        weights = [_WORDS] * len(canvas.words) + [1] * len(canvas.looked_at)
+        common = np.minimum(boxes[..., 2:], areas[:, 2:]) - np.maximum(boxes[..., :2], areas[:, :2])
+        hidden: npt.NDArray[np.int64] = common.clip(0).prod(axis=2) @ np.array(weights, np.int64)
+        return hidden
 
     def box(self, canvas: Canvas) -> pygame.Rect:
         """Return the note's panel, in the window's pixels."""
         reading = canvas.reading
         return reading.rect(*self._box_at(reading, self._place))
 
-    def _box_at(self, reading: Canvas, place: tuple[float, float, float]) -> pygame.FRect:
-        (widest, across, down), view, (beside, above) = place, reading.view, _MARGINS
-        room = min(widest, view.width - 4 * beside)
+    def _box_at(self, reading: Canvas, place: Place) -> pygame.FRect:
+        return _box(reading, place, self._size(reading, place[0]))
+
+    def _size(self, reading: Canvas, widest: float) -> tuple[float, float]:
+        """Return the width and the height of a note whose lines are no wider than that."""
+        beside, above = _MARGINS
+        room = min(widest, reading.view.width - 4 * beside)
         told = lines(self.text, SMALL, "regular", room, reading.scale)
-        width = max(reading.text_width(line, size=SMALL) for line in told) + 2 * beside
-        height = len(told) * LEADING * SMALL + 2 * above
-        return pygame.FRect(across * (view.width - width), down * (view.height - height), width, height)
+        width = max(reading.text_width(line, size=SMALL) for line in told)
+        return width + 2 * beside, len(told) * LEADING * SMALL + 2 * above
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the message, if there is one."""
         if not self._left:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
@@ -93,7 +101,10 @@ class Note:
             words.text(self.text, "centre", alpha)
 
 
-def _covers(reading: Canvas, box: pygame.FRect, taken: Iterable[pygame.Rect]) -> int:
-    """Return how many pixels of these areas a note would hide."""
-    place = reading.rect(*box)
-    return sum(place.clip(area).w * place.clip(area).h for area in taken)
+def _box(reading: Canvas, place: Place, size: tuple[float, float]) -> pygame.FRect:
+    (_, across, down), (width, height), view = place, size, reading.view
+    return pygame.FRect(across * (view.width - width), down * (view.height - height), width, height)
+
+
+def _edges(box: pygame.Rect) -> tuple[int, int, int, int]:
+    return box.left, box.top, box.right, box.bottom

@@ -79,7 +79,6 @@ class Column:
     # Words and figures
 
     def title(self, words: Words, size: float = 34.0, weight: Weight = "light") -> None:
-        """Add a title."""
         self.text(words, size=size, weight=weight)
 
     def text(
@@ -99,7 +98,6 @@ class Column:
         self.text(words, size=SMALL, colour=MUTE)
 
     def caption(self, words: str) -> None:
-        """Add the words over a group of rows."""
         self.add(lambda cursor: cursor.caption(words))
 
     def pair(self, words: str, figure: Words, colour: Colour | None = None) -> None:
@@ -107,7 +105,6 @@ class Column:
         self.add(lambda cursor: cursor.pair(words, said(figure), colour))
 
     def bar(self, share: Callable[[], float], colour: Colour = NET) -> None:
-        """Add a bar."""
         self.add(lambda cursor: cursor.bar(share(), colour))
 
     def picture(self, height: float | Callable[[float], float], draw: Callable[[Canvas, pygame.FRect], None]) -> None:
@@ -121,11 +118,9 @@ class Column:
         self.add(write)
 
     def gap(self, points: float = 2 * STEP) -> None:
-        """Leave some room."""
         self.add(lambda cursor: cursor.gap(points))
 
     def line(self) -> None:
-        """Add a hairline."""
         self.add(Cursor.line)
 
     # Widgets

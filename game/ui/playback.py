@@ -80,7 +80,6 @@ class Playback:
             self._row.index = self._speeds.index(self._clock.rate)
 
     def toggle(self) -> None:
-        """Stop, or go on."""
         self.stopped = not self.stopped
 
     def step(self) -> None:

@@ -187,7 +187,6 @@ class SliderRow(RowWidget):
 
     @property
     def fraction(self) -> float:
-        """Position of the handle on its track, 0 to 1."""
         return self._fraction_of(self.value)
 
     def _fraction_of(self, value: float) -> float:
@@ -204,7 +203,6 @@ class SliderRow(RowWidget):
             self._on_change(value)
 
     def shift(self, direction: int) -> bool:
-        """Move to the next step or tick."""
         low, value = self.limits[0], self.value
         steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
         stops = low + direction * steps * self._step, *self._ticks

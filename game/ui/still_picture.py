@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import pygame
 
+from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import NIGHT0
 
 
 class StillPicture:
-    """Picture of a scene, `dimmed` by a share, and blurred unless `sharp`; painted once per window size."""
+    """Picture of a scene, `dimmed` by a share, and blurred unless `sharp`; painted once a window size and language."""
 
     def __init__(self, below: Scene, dimmed: float = 0.5, *, sharp: bool = False) -> None:
         self._below, self._dimmed, self._sharp = below, dimmed, sharp
         self._picture: pygame.Surface | None = None
+        self._language = texts.LANGUAGE
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the picture over the whole window."""
         whole = canvas.whole
-        if self._picture is None or self._picture.get_size() != whole.surface.get_size():
-            self._picture = self._paint(whole)
+        size, language = whole.surface.get_size(), texts.LANGUAGE
+        if self._picture is None or (self._picture.get_size(), self._language) != (size, language):
+            self._picture, self._language = self._paint(whole), language
         else:
             whole.surface.blit(self._picture, (0, 0))
 

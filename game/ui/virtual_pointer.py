@@ -31,7 +31,6 @@ class HeldDirections:
         self.clear()
 
     def clear(self) -> None:
-        """Forget what is held."""
         self._arrows: dict[int, Command] = {}  # by the code of the key or button
         self._stick = [0.0, 0.0]
 
@@ -180,7 +179,6 @@ class VirtualPointer(Widget):
         self.draw_pointer(canvas)
 
     def draw_pointer(self, canvas: Canvas) -> None:
-        """Draw the pointer while it is active."""
         if self.typing:
             x, y = self.place
             canvas.dot((x, y), 9, NIGHT0, 0.6)  # visible on bright ink, too

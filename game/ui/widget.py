@@ -91,7 +91,6 @@ class Widget(UIElement):
 
     @property
     def box(self) -> pygame.Rect:
-        """The widget's box, in points."""
         return pygame.Rect(self.rect)
 
     @property
@@ -101,7 +100,6 @@ class Widget(UIElement):
         return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
 
     def press(self) -> Transition | None:
-        """Activate the widget."""
         return None
 
     def shift(self, direction: int) -> bool:  # noqa: ARG002
@@ -149,7 +147,6 @@ class Widget(UIElement):
         self.warmth = target if at_once else self.warmth + (target - self.warmth) * EASE
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the widget."""
         canvas.cover(canvas.rect(*self.box))
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
@@ -191,7 +188,6 @@ class RowWidget(Widget):
         raise NotImplementedError
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
-        """Whether a point is on it and not scrolled away."""
         return bool(self.rect.collidepoint(hover_x, hover_y)) and (
             self.seen is None or self.seen.collidepoint(hover_x, hover_y)
         )

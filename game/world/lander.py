@@ -55,14 +55,14 @@ class Facet:
 
 @dataclass(frozen=True)
 class Finish:
-    """Lighting of the facets: their share of the light, and whether their edges catch the sun."""
+    """How facets are painted: their share of the light, and whether the craft is whole: its edges catch the sun."""
 
     light: float
-    rim: bool
+    whole: bool
 
 
 # One row a picture, by the image key that sprites have
-PICTURES: Final = {LANDER: Finish(1.0, rim=True), WRECK: Finish(0.42, rim=False)}
+PICTURES: Final = {LANDER: Finish(1.0, whole=True), WRECK: Finish(0.42, whole=False)}
 
 
 def _mirrored(facet: Facet) -> Facet:
@@ -164,6 +164,7 @@ def _cabin() -> list[Facet]:
 
 
 FACETS: Final = tuple(_legs() + _engine() + _descent_stage() + _cabin())
+_LOST: Final = frozenset(FACETS.index(each) for each in [*_legs()[1::2], *_cabin()[:3]])  # of a wreck: a leg, and masts
 # Edges that catch the light, each from corner to corner counter-clockwise around the craft.
 _RIMS: Final = (
     ((0.62, -0.45), (0.72, 0.05), (0.66, 0.12)),
@@ -234,12 +235,14 @@ def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image
     placed = _CORNERS @ np.array(((math.cos(turn), -math.sin(turn)), (math.sin(turn), math.cos(turn)))).T
     places = (placed * (scale, -scale) + middle).tolist()
     colours = _lit(turn, finish.light)
-    for facet, (start, stop), colour in zip(FACETS, _SPANS, colours, strict=True):
+    for number, (facet, (start, stop), colour) in enumerate(zip(FACETS, _SPANS, colours, strict=True)):
+        if not finish.whole and number in _LOST:
+            continue
         if facet.width:
             _strut(sheet, colour, places[start], places[stop - 1], facet.width * scale)
         else:
             pygame.draw.polygon(sheet, colour, places[start:stop])
-    if finish.rim:
+    if finish.whole:
         _paint_rim(sheet, turn, scale, middle)
     return pygame.transform.smoothscale(sheet, (side, side))
 

@@ -12,11 +12,12 @@ import numpy as np
 import pygame
 
 from ai.environment import Bools, Doubles, Ints
+from ai.lander.environment import LanderEnv
 from game.core.clock import STEP
 from game.drawing.paint import mix
 from game.drawing.tokens import Colour
+from game.flight.forecast import HEIGHT_STEP, REACH, heights
 from game.world.camera import View
-from game.world.landscape.relief import Relief
 
 _LEVELS: Final = 8
 
@@ -51,6 +52,34 @@ _MOST: Final = 64
 # By radius, how far apart the radii that have a picture are: a view that zooms would need all of them.
 _STEP: Final = np.repeat([1, 2, 4, 8], [5, 12, 16, _MOST - 32])
 _FADING: Final = np.array([_LEVELS, _LEVELS, _LEVELS // 2, _LEVELS, _LEVELS, _LEVELS])  # level from which it fades
+
+
+class Relief:
+    """Height map of one environment's ground, with a moving pad at its current place."""
+
+    def __init__(self, env: LanderEnv) -> None:
+        self._env = env
+        self._heights = np.array(heights(env.ground))
+
+    def height(self, x: Doubles) -> Doubles:
+        """Return the height in metres of the ground or pad under x (k,); x is rounded to 2 cm."""
+        if self._env.conditions.moves:  # such a world has one pad on a plain, and nothing else
+            x = x - float(self._env.pad_shift[0])
+        places = np.rint((x + REACH) / HEIGHT_STEP).astype(np.intp)
+        heights: Doubles = self._heights[places.clip(0, len(self._heights) - 1)]
+        return heights
+
+    def deck(self, x: float) -> tuple[float, float] | None:
+        """Return the edges of the pad under x, or None where there is none."""
+        shift = float(self._env.pad_shift[0])
+        return next(
+            (
+                (pad.left + shift, pad.right + shift)
+                for pad in self._env.ground.pads
+                if pad.left <= x - shift <= pad.right
+            ),
+            None,
+        )
 
 
 class Particles:

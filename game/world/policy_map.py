@@ -88,7 +88,6 @@ class PolicyMap:
         self._state: bytes = b""
         self._observations: Floats | None = None
         self._pieces: list[Decision] = []
-        self._waited = 0
 
     def follow(self, env: LanderEnv, slot: int, policy: Policy) -> None:
         """Compute a piece of the map for the tilt, turn and speed of a lander; nothing while it is off or up to date.
@@ -106,10 +105,6 @@ class PolicyMap:
         if first == len(self._observations):  # in an update of its own: painting it takes as long as a piece
             self._finish()
             return
-        self._waited += 1
-        if self._waited * _PIECE < work:  # a large network: one place in several updates
-            return
-        self._waited = 0
         self._pieces.append(decide(policy, self._observations[first : first + most]))
 
     def draw(self, canvas: Canvas, view: View) -> None:

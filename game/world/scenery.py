@@ -13,13 +13,11 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
-from game.world.callouts import Callouts
+from game.world.callouts import Callouts, PadFactors
 from game.world.camera import WIDEST, Camera, CameraTarget, ClearArea, View
-from game.world.edges import draw_edges
 from game.world.landscape.backdrop import EARTH, landscape
-from game.world.landscape.ground import draw_ground
+from game.world.landscape.ground import draw_edges, draw_ground
 from game.world.landscape.themes import LOOKS, look_of
-from game.world.pad_factors import PadFactors
 from game.world.particles import DUST
 from game.world.stage import Stage, flames
 
@@ -141,19 +139,12 @@ class Scenery:
 
         `words` is whether to draw the callouts too.
 
-        A craft that has left the area flies out of view; a cross marks where it left.
+        Where a craft has left the area is a cross.
         """
         view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
         self._factors.draw(canvas, view, pose)
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
-            if self.stage.pose_after(alpha) is not None:
-                whole = canvas.view
-                canvas.surface.set_clip(
-                    canvas.rect(whole.left, whole.top + _HEAD, whole.width, whole.height - _HEAD)
-                )  # behind the words
-                self.stage.draw_lander(canvas, view, pose, alpha=alpha)
-                canvas.surface.set_clip(None)
             return
         self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)

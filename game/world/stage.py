@@ -21,10 +21,9 @@ from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
 from game.world.flame import begin_flames
-from game.world.landscape.relief import Relief
 from game.world.landscape.wind import Wind
-from game.world.particles import DUST, Particles
-from game.world.wreck import Departure, Wreck
+from game.world.particles import DUST, Particles, Relief
+from game.world.wreck import Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _DIE: Final = 0.22
@@ -32,6 +31,7 @@ _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
+_SAGS: Final = (0.35, 0.30)  # metres and radians by which an upright wreck sinks onto its hull
 _WRECK_DETAIL: Final = 0.6  # resolution of a wreck, of what the closest view would need
 
 
@@ -72,7 +72,7 @@ class Stage:
         self.flash = np.zeros(count, np.intp)
         self.jolt = 0.0
         self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
-        self._after: Wreck | Departure | None = None
+        self._after: Wreck | None = None
         self._flicker = 0
         begin_flames()
         self._down = np.zeros(2, bool)
@@ -129,11 +129,9 @@ class Stage:
             self._burn()
             self._touch()
 
-    def _begin_after(self) -> Wreck | Departure | None:
+    def _begin_after(self) -> Wreck | None:
         """Return what still moves after the end; with reduced motion, no wreck tumbles."""
         env = self._env
-        if env.outcome[0] == Outcome.OUT_OF_BOUNDS:
-            return Departure(env, 0)
         if env.outcome[0] != Outcome.CRASHED:
             return None
         if env.intact[0]:
@@ -174,7 +172,7 @@ class Stage:
 
     def sprite(self, slot: int = 0, size: float = 1.0) -> Sprite:
         """Return the sprite of a slot's lander; `size` 1 is true to scale."""
-        sprite = self._after.sprite if isinstance(self._after, Wreck) else self._lander
+        sprite = self._after.sprite if self._after else self._lander
         image = art.WRECK if self._wrecked[slot] else art.LANDER
         return replace(sprite, image=image, size=(size * sprite.size[0], size * sprite.size[1]))
 
@@ -199,11 +197,11 @@ class Stage:
         self._draw_flash(canvas, view, x, y, slot)
 
     def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
-        """Draw the dark wreck of a crash; one that does not tumble sags to the side it leans to."""
+        """Draw the dark wreck of a crash; one that does not tumble sags to the side of its broken leg."""
         x, y, angle = pose.tolist()
         if self._after is None:
             sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
-            y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
+            y, angle = y - _SAGS[0] * sag * max(0.0, math.cos(angle)), angle - _SAGS[1] * sag
         size = art.share(sprite)
         middle = view.pixel(*stand(x, y, angle, size))
         # A new picture for each degree that it tumbles, none of them seen from as near as a craft in flight.

@@ -1,8 +1,7 @@
-"""The craft after its flight: a wreck tumbles, a whole craft settles, one that left flies away. Decoration only."""
+"""The craft after its flight: a wreck tumbles, a whole craft settles. Decoration only."""
 
 from __future__ import annotations
 
-import math
 from typing import Any, Final
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
-from engine import DT, Polygon, Sprite, World
+from engine import Polygon, Sprite, World
 from game.world.lander import LANDER, SIZE, WRECK
 
 _STEPS: Final = 420  # at most; after them the wreck lies still
@@ -22,8 +21,6 @@ _SETTLES: Final[dict[str, Any]] = {
     "restitution": 0.0,
     "friction": 1.6,
 }  # feet dig in: it stays where it came down, on a slope too
-_AWAY: Final = 3.0  # m/s² with which a craft that left the area flies on
-_LEVELS: Final = 3.0  # 1/s, at which its sinking and its turning die down
 
 
 class Wreck:
@@ -42,7 +39,8 @@ class Wreck:
         surface = _SETTLES if whole else _TUMBLES
         self._world = World(gravity=(0.0, -env.gravity), batch=1, iterations=5)
         x, y = FOOT_CENTRE
-        shapes = [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-x, y)), Polygon.box(*FOOT_SIZE, (x, y))]
+        feet = [(-x, y), (x, y)] if whole else [(-x, y)]  # without the other leg it comes to lie on its hull
+        shapes = [Polygon(HULL), *(Polygon.box(*FOOT_SIZE, foot) for foot in feet)]
         blow = 0.0 if whole else float(env.impact[slot, :2].max())
         self._body = self._world.add(
             shapes, env.position[slot], float(env.angle[slot]), mass=params.mass, inertia=params.inertia,
@@ -79,26 +77,3 @@ class Wreck:
 
     def _pose(self) -> Doubles:
         return np.append(self._body.position[0], self._body.angle[0])
-
-
-class Departure:
-    """The craft of one slot from the moment it left the area: it levels out and flies away, faster and faster."""
-
-    def __init__(self, env: LanderEnv, slot: int) -> None:
-        x, y = env.position[slot].tolist()
-        self._speed = np.append(env.velocity[slot], env.angular_velocity[slot])
-        up = y > env.limits.ceiling
-        self._push = np.array([0.0, _AWAY, 0.0]) if up else np.array([math.copysign(_AWAY, x), 0.0, 0.0])
-        self._now = self._before = np.array([x, y, float(env.angle[slot])])
-
-    def step(self) -> None:
-        """Advance by 1/60 s."""
-        self._before = self._now
-        kept = math.exp(-_LEVELS * DT)
-        self._speed = self._speed * (1.0, kept if self._speed[1] < 0 else 1.0, kept) + self._push * DT
-        self._now = self._now + self._speed * DT
-
-    def pose(self, alpha: float) -> Doubles:
-        """Return x, y and angle, `alpha` of the way from the last step to this one."""
-        pose: Doubles = self._before + alpha * (self._now - self._before)
-        return pose

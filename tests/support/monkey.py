@@ -1,9 +1,9 @@
-"""A monkey that plays: random keys, mouse, pads, windows, files and disks, in every scene, until something breaks.
+"""A monkey that plays: random keys, mouse, pads, windows and files, in every scene, until something breaks.
 
 It is the real game without a window (SDL draws into memory, a frame lasts 1/60 s of its own clock), and what comes
 in are pygame's events. It wanders by them from scene to scene, and now and then is put into one that is drawn by
-lot. Meanwhile files of the player's are cut short, emptied, swapped for nonsense or thrown away, the disk is full,
-the sound device is lost, training processes are killed, and the game is closed and opened again.
+lot. Meanwhile files of the player's are cut short, emptied, swapped for nonsense or thrown away, training processes
+are killed, and the game is closed and opened again.
 
 A fault is any exception, also one that the game survives with its fault screen; a warning about a figure that is
 none; and whatever is left behind: a scene that was left for good but is still in memory, a process, a thread, an
@@ -30,12 +30,11 @@ from multiprocessing import active_children
 from pathlib import Path
 from shutil import copytree, rmtree
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+import pygame
 
-from game.audio.instruments import INSTRUMENTS, Instrument
-from game.audio.mixer import Sound
 from game.core.assets import MODELS_DIR
 from game.core.scene import Pop, Push, Scene
 from game.core.settings import SettingsFile
@@ -44,7 +43,7 @@ from game.scenes import scene_of
 from game.scenes.menus.menu import MenuScene
 from game.shell.app import App
 from game.ui.context import Context
-from tests.support.monkey_deeds import DEEDS, Hands
+from game.ui.form import Form
 from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS
 from tests.support.tour import scene_types, stock
 
@@ -54,8 +53,26 @@ _OF_FILES = {"ReplayScene", "StudyScene", "friend"}  # scenes for which files ar
 _DEEPEST = 7  # scenes one above the other
 _JUMP, _JUMP_HOME = 0.015, 0.15  # how often it is put somewhere else, and from the menu, where it soon would quit
 _TOLD = 25  # deeds before a fault that are told
-# What a training may say when its files are spoilt or its disk is full. It is shown to the player.
+# What a training may say when its files are spoilt. It is shown to the player.
 _SAID = (OSError, ValueError, EOFError, MemoryError)
+_SIZES = [(1280, 720), (1280, 720), (960, 540), (1000, 800), (640, 360), (1600, 900)]
+# Keys that mean something somewhere, as the game comes; the others may be bound to something, too.
+_BOUND = [pygame.K_UP, pygame.K_DOWN, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_w, pygame.K_a, pygame.K_s, pygame.K_d,
+          pygame.K_SPACE, pygame.K_RETURN, pygame.K_KP_ENTER, pygame.K_TAB, pygame.K_TAB, pygame.K_ESCAPE, pygame.K_p,
+          pygame.K_BACKSPACE, pygame.K_AC_BACK, pygame.K_r, pygame.K_PERIOD, pygame.K_MINUS, pygame.K_PLUS, pygame.K_n,
+          pygame.K_b, pygame.K_PAGEUP, pygame.K_PAGEDOWN, pygame.K_c, pygame.K_g, pygame.K_DELETE]  # fmt: skip
+_OTHERS = [*range(pygame.K_SPACE, pygame.K_z + 1), *range(pygame.K_F1, pygame.K_F12 + 1), pygame.K_HOME, pygame.K_END,
+           pygame.K_INSERT, pygame.K_LSHIFT, pygame.K_CAPSLOCK, pygame.K_MENU, 0]  # fmt: skip
+_MODS = (0, 0, 0, pygame.KMOD_SHIFT, pygame.KMOD_CTRL, pygame.KMOD_ALT, pygame.KMOD_META)
+_TEXTS = ("a", "7", " ", ".", "é", "月", "🚀", "CON", "../..", "", "\x00", "\u202e", "x" * 300, "NUL.txt", "-1e999",
+          "nan")  # fmt: skip
+_PAD_BUTTONS = [*range(21), *range(15), *range(8)]
+# Events of the window, and such that the game has no use for.
+_STRANGE = ("WINDOWFOCUSLOST", "WINDOWMINIMIZED", "WINDOWEXPOSED", "WINDOWLEAVE", "WINDOWHIDDEN", "WINDOWMAXIMIZED",
+            "WINDOWMOVED", "WINDOWDISPLAYCHANGED", "WINDOWSIZECHANGED", "CLIPBOARDUPDATE", "KEYMAPCHANGED",
+            "RENDER_TARGETS_RESET", "DROPFILE", "FINGERDOWN", "USEREVENT", "JOYBUTTONDOWN", "AUDIODEVICEREMOVED",
+            "AUDIODEVICEADDED")  # fmt: skip
+_NONSENSE = (b"", b"\x00\xff\xfe" * 200, b"{", b"[]", b"null", b'{"format": 1e999}', b"NaN\n" * 50, b"[" * 5000)
 
 
 class Faults(logging.Handler):
@@ -105,45 +122,28 @@ def _heirs(kind: type) -> list[type]:
     return [each for heir in kind.__subclasses__() for each in (heir, *_heirs(heir))]
 
 
-class Recorded(Instrument):
-    """An instrument that is played once, for all the games there will be."""
-
-    def render(self, key: str) -> NDArray[np.int16]:
-        """Return the sound."""
-        return _recording(key)
-
-
-@cache
-def _recording(key: str) -> NDArray[np.int16]:
-    return INSTRUMENTS[key].render(key)
-
-
 class Monkey:
-    """Plays one game after another in a folder. `visits` counts the frames in each scene.
+    """Plays one game after another in a folder, empty at first.
 
-    Args:
-        folder: empty; the player's, the networks' and the temporary files are put there.
-        seed: of all that it does.
-        open_sound: whether there is to be a device, which in memory is silent.
+    Attributes:
+        visits, entered: frames in each scene, and how often it was come to.
+        events, games: what has come in, and how many games were opened.
 
     """
 
-    def __init__(self, folder: Path, seed: int = 0, *, open_sound: bool = True) -> None:
+    def __init__(self, folder: Path, seed: int = 0) -> None:
         self.rng = np.random.default_rng(seed)
         self.visits: Counter[str] = Counter()
         self.entered: Counter[str] = Counter()
         self.deeds: deque[str] = deque(maxlen=_TOLD)
         self.faults = Faults(self.deeds)
         self.events = self.games = 0
-        self._folder, self._open_sound = folder, open_sound
-        self._frames = count()
-        self._last = ""
+        self._folder, self._frames, self._last = folder, count(), ""
+        self._goes_on, self._mouse, self._keys = True, (0, 0), list[int]()
         self._forgotten: list[str] = []
         # Of whoever did something in this process before:
         self._others, self._threads = scenes_alive(), set(threading.enumerate())
-        self._weights = np.array(list(DEEDS.values())) / sum(DEEDS.values())
         self.app: App
-        self.hands: Hands
 
     def play(self, events: int) -> None:
         """Do something again and again, until so many events have come in."""
@@ -152,45 +152,35 @@ class Monkey:
             while self.events < events:
                 self._do_something()
             self.go_home()
-            self.hands.come_back()
+            self._come_back()
             for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
-                self.hands.pass_frame()
-            in_use = [*self._others, *self.app.scenes.stack]
-            stale = stale_scenes(in_use)
-            self._forgotten = stale if self.hands.goes_on else []  # a game that was left draws no more
+                self._pass_frame()
+            stale = stale_scenes([*self._others, *self.app.scenes.stack])
+            self._forgotten = stale if self._goes_on else []  # a game that was left draws no more
             self.close()
 
     def _do_something(self) -> None:
-        before = self.hands.posted
         try:
             if self.rng.random() < (_JUMP_HOME if isinstance(self.app.scenes.top, MenuScene) else _JUMP):
                 self.deeds.append(self._jump())
             else:
-                deed = list(DEEDS)[self.rng.choice(len(self._weights), p=self._weights)]
-                self.deeds.append(deed(self.hands))
-            all(self.hands.pass_frame() for _ in range(int(self.rng.choice([0, 0, 1, 1]))))
-            goes_on = self.hands.goes_on
+                deed = list(DEEDS)[self.rng.choice(len(_CHANCES), p=_CHANCES)]
+                self.deeds.append(deed(self))
+            all(self._pass_frame() for _ in range(int(self.rng.choice([0, 0, 1, 1]))))
         except Exception:
             self.faults.add("out of the game's own hands: " + traceback.format_exc())
-            goes_on = False
-        self.events += self.hands.posted - before
-        if not goes_on:
+            self._goes_on = False
+        if not self._goes_on:
             self.close()
             self._open()
-
-    def _count(self, top: Scene) -> None:
-        name = type(top).__name__
-        self.visits[name] += 1
-        self.entered[name] += name != self._last
-        self._last = name
 
     def _jump(self) -> str:
         """Go into a scene that is drawn by lot, whatever is on the screen; from deep down, back to the menu first."""
         scenes = self.app.scenes
         if len(scenes.stack) >= _DEEPEST or self.rng.random() < 0.5:
             self.go_home()
-        name = WAYS[self.rng.integers(len(WAYS))]
-        self.hands.posted += 1
+        name = self._one(WAYS)
+        self.events += 1
         try:
             scene = ALL[name](self.app.context) if name in ALL else OVER_OTHERS[name](scenes.top)
         except (OSError, ValueError):
@@ -213,22 +203,18 @@ class Monkey:
         rmtree(models, ignore_errors=True)
         copytree(MODELS_DIR, models)
         context = Context(user, SettingsFile(user).load(), models, rng=np.random.default_rng(self.rng.integers(2**31)))
-        context.sound = Sound({key: Recorded(**vars(each)) for key, each in INSTRUMENTS.items()})
         stock(context)
         self.app = App(context, now=lambda: next(self._frames) / 60, scene_of=scene_of, capped=False)
-        self.hands = Hands(self.app, self.rng, self._count)
-        if self._open_sound:
-            context.sound.open()
+        self._goes_on, self._keys = True, []
         self.games += 1
 
     def close(self) -> None:
         """Close the game."""
-        self.hands.free_disk()
         try:
             self.app.close()
         except Exception:
             self.faults.add("while closing: " + traceback.format_exc())
-        del self.app, self.hands
+        del self.app
 
     def left_behind(self) -> list[str]:
         """Say what lives on although the game is closed."""
@@ -241,6 +227,179 @@ class Monkey:
         hidden = (path for path in (self._folder / "user").rglob(".*") if path.name != TRASH)  # what can be restored
         files = [path for path in hidden if children.isdisjoint(path.parents)]
         return found + [f"file {path}" for path in (*files, *Path(tempfile.gettempdir()).iterdir())]
+
+    # What it can do: each says in a few words what it did
+
+    def _one(self, choices: Any) -> Any:
+        return choices[self.rng.integers(len(choices))]
+
+    def _post(self, kind: int, **values: Any) -> None:
+        pygame.event.post(pygame.event.Event(kind, values))
+        self.events += 1
+
+    def _pass_frame(self) -> bool:
+        """Play a frame; False when the game is over."""
+        name = type(self.app.scenes.top).__name__
+        self.visits[name] += 1
+        self.entered[name] += name != self._last
+        self._last = name
+        self._goes_on = self.app.tick()
+        return self._goes_on
+
+    def _key(self, keys: Any = _BOUND) -> str:
+        """Press a key, and let go of it now or some day."""
+        key, mod = self._one(keys), self._one(_MODS)
+        values = {"key": key, "mod": mod, "unicode": chr(key) if 32 <= key < 127 else "", "scancode": 0}
+        self._post(pygame.KEYDOWN, **values)
+        if self.rng.random() < 0.7:
+            self._post(pygame.KEYUP, **values)
+        else:
+            self._keys.append(key)
+        return f"key {pygame.key.name(key) or key}"
+
+    def _let_go(self) -> str:
+        """Let go of a key, or of one that was never pressed."""
+        key = self._keys.pop() if self._keys else self._one(_BOUND)
+        self._post(pygame.KEYUP, key=key, mod=0, unicode="", scancode=0)
+        return "key up"
+
+    def _type(self) -> str:
+        text = self._one(_TEXTS)
+        if self.rng.random() < 0.2:
+            self._post(pygame.TEXTEDITING, text=text, start=0, length=len(text))
+        self._post(pygame.TEXTINPUT, text=text)
+        return f"text {text[:10]!r}"
+
+    def _click(self) -> str:
+        self._move(self._target())
+        button = int(self.rng.choice([1, 1, 1, 1, 2, 3, 4, 6]))
+        for _ in range(int(self.rng.choice([1, 1, 1, 2]))):
+            self._post(pygame.MOUSEBUTTONDOWN, pos=self._mouse, button=button, touch=False)
+            if self.rng.random() < 0.95:
+                self._post(pygame.MOUSEBUTTONUP, pos=self._mouse, button=button, touch=False)
+        return f"click {button} at {self._mouse}"
+
+    def _drag(self) -> str:
+        self._move(self._target())
+        self._post(pygame.MOUSEBUTTONDOWN, pos=self._mouse, button=1, touch=False)
+        start, end = self._mouse, self._target()
+        for share in np.linspace(0, 1, int(self.rng.integers(2, 9))):
+            x, y = ((1 - share) * a + share * b for a, b in zip(start, end, strict=True))
+            self._move((round(x), round(y)), (1, 0, 0))
+            self._pass_frame()
+        if self.rng.random() < 0.9:
+            self._post(pygame.MOUSEBUTTONUP, pos=self._mouse, button=1, touch=False)
+        return f"drag to {end}"
+
+    def _wheel(self) -> str:
+        x, y = (int(each) for each in self.rng.integers(-9, 10, 2))
+        self._post(pygame.MOUSEWHEEL, x=x, y=y, precise_x=float(x), precise_y=float(y), flipped=False, touch=False)
+        return "wheel"
+
+    def _hover(self) -> str:
+        self._move(self._target())
+        return f"move to {self._mouse}"
+
+    def _move(self, place: tuple[int, int], buttons: tuple[int, int, int] = (0, 0, 0)) -> None:
+        rel = (place[0] - self._mouse[0], place[1] - self._mouse[1])
+        self._mouse = place
+        self._post(pygame.MOUSEMOTION, pos=place, rel=rel, buttons=buttons, touch=False)
+
+    def _target(self) -> tuple[int, int]:
+        """Draw a place in the window: the middle of a widget, anywhere, or beyond its edge."""
+        form = getattr(self.app.scenes.top, "form", None)
+        if isinstance(form, Form) and form.widgets and self.rng.random() < 0.6:
+            canvas = self.app.scenes.top.laid_on(self.app.canvas)
+            rect = canvas.rect(*self._one(form.widgets).box)
+            x, y = rect.topleft + self.rng.random(2) * rect.size
+            return round(x), round(y)
+        low, high = (-50, 1.1) if self.rng.random() < 0.05 else (0, 1.0)
+        x, y = (int(self.rng.integers(low, max(1, round(high * length)))) for length in self.app.window.size)
+        return x, y
+
+    def _pad_button(self) -> str:
+        pad, button = int(self.rng.integers(2)), self._one(_PAD_BUTTONS)
+        self._post(pygame.CONTROLLERBUTTONDOWN, instance_id=pad, button=button)
+        if self.rng.random() < 0.7:
+            self._post(pygame.CONTROLLERBUTTONUP, instance_id=pad, button=button)
+        return f"pad button {button}"
+
+    def _pad_axis(self) -> str:
+        value, axis = self._one([-32768, 32767, 0, 0, int(self.rng.integers(-32768, 32768))]), self._one(range(8))
+        self._post(pygame.CONTROLLERAXISMOTION, instance_id=int(self.rng.integers(2)), axis=axis, value=value)
+        return f"pad axis {axis}: {value}"
+
+    def _plug(self) -> str:
+        """Plug a pad in, or pull one out that may have been there."""
+        if self.rng.random() < 0.5:
+            self._post(pygame.CONTROLLERDEVICEADDED, device_index=int(self.rng.integers(4)), guid="")
+        else:
+            self._post(pygame.CONTROLLERDEVICEREMOVED, instance_id=int(self.rng.integers(3)))
+        return "a pad comes or goes"
+
+    def _strange(self) -> str:
+        name = self._one(_STRANGE)
+        self._post(getattr(pygame, name), x=0, y=0, dx=0.0, dy=0.0, window=None, display_index=0, file="/nowhere",
+                   finger_id=1, touch_id=1, button=0, which=0, iscapture=False)  # fmt: skip
+        return str(name)
+
+    def _come_back(self) -> str:
+        """Let the window be seen and used."""
+        self._post(pygame.WINDOWRESTORED, window=None)
+        self._post(pygame.WINDOWFOCUSGAINED, window=None)
+        return "window is back"
+
+    def _resize(self) -> str:
+        size = self.app.window.size = self._one(_SIZES)
+        return f"resize to {size}"
+
+    def _quit(self) -> str:
+        self._post(pygame.QUIT)
+        return "close"
+
+    def _wait(self) -> str:
+        frames = int(self.rng.integers(10, 120))
+        all(self._pass_frame() for _ in range(frames))
+        return f"wait {frames}"
+
+    def _damage(self) -> str:
+        """Spoil a file of the player's or a shipped network."""
+        folders = self.app.context.user_dir, self.app.context.models_dir
+        files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.is_file()]
+        path, how = self._one(files), self._one(("short", "nonsense", "gone", "folder", "bits"))
+        try:
+            data = bytearray(path.read_bytes())
+            if how == "short":
+                path.write_bytes(data[: len(data) // 2])
+            elif how == "nonsense":
+                path.write_bytes(self._one(_NONSENSE))
+            elif how == "bits" and data:
+                data[self.rng.integers(len(data))] ^= 0xFF
+                path.write_bytes(data)
+            elif how in ("gone", "folder") and path.suffix != ".log":
+                path.unlink()
+                if how == "folder":
+                    path.mkdir()
+        except OSError as error:  # a training replaces it at this moment
+            return f"{how} {path.name}: {error}"
+        return f"{how} {path.parent.name}/{path.name}"
+
+    def _kill_child(self) -> str:
+        """Kill a process that trains."""
+        children = active_children()
+        for child in children[:1]:
+            child.kill()
+        return f"kill one of {len(children)}"
+
+
+# What is done, and how often beside the others.
+DEEDS: dict[Callable[[Monkey], str], float] = {
+    Monkey._key: 24, lambda monkey: monkey._key(_OTHERS): 3, Monkey._let_go: 8, Monkey._type: 2, Monkey._click: 12,
+    Monkey._drag: 3, Monkey._wheel: 3, Monkey._hover: 6, Monkey._wait: 0.5, Monkey._pad_button: 8, Monkey._pad_axis: 6,
+    Monkey._plug: 0.3, Monkey._strange: 0.8, Monkey._come_back: 0.6, Monkey._resize: 0.05, Monkey._quit: 0.02,
+    Monkey._damage: 0.15, Monkey._kill_child: 0.05,
+}  # fmt: skip
+_CHANCES = np.array(list(DEEDS.values())) / sum(DEEDS.values())
 
 
 def scenes_alive() -> list[Scene]:
@@ -255,10 +414,15 @@ def stale_scenes(in_use: list[Scene]) -> list[str]:
     """Say which scenes are in memory although they are not in use."""
     gc.unfreeze()  # or what a game has kept from the collector would not be found
     for each in gc.get_objects():
-        if isinstance(each, type(_recording)) and each.__module__.startswith("game."):
+        if isinstance(each, type(_a_cache)) and each.__module__.startswith("game."):
             each.cache_clear()  # pictures, and fonts that keep their files open: so many at the most, but not yet
     alive = Counter(type(each).__name__ for each in scenes_alive() if each not in in_use)
     return [f"{number} × {name} still in memory" for name, number in alive.items()]
+
+
+@cache
+def _a_cache() -> None:
+    """Be of the type of all that keeps."""
 
 
 def wait_for(holds: Callable[[], object], seconds: float) -> bool:

@@ -47,6 +47,7 @@ from game.training.beside import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.rows import ChoiceRow
+from tests.game.tour.checkers import IN_HAND
 from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
@@ -315,7 +316,8 @@ class Walk:
                 driver.resize(window)
                 self._note(driver, f"{stop}, {window}")
             driver.resize(VIEW_SIZE)
-            for place, widget in enumerate(list(self._widgets(driver))):
+            held = str(stop) in IN_HAND  # another widget in focus would let go of the lander
+            for place, widget in enumerate([] if held else list(self._widgets(driver))):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)

@@ -39,11 +39,11 @@ WHO = {
     texts.YOU_FLY: "person",
     texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP): "person",
     **dict.fromkeys(texts.YOU_SHARE.values(), "both"),
-    texts.NETWORK_FLIES: "network",
-    texts.NETWORK_FLIES_BACK.format(key="Tab"): "network",
+    "The network flies": "network",
+    "The network flies.  Tab  takes back": "network",
 }
 WHO |= {lines[0]: "network" if name == "ALONE" else "both" for name, lines in texts.COPILOT_PANEL_WHY.items()}
-FLEW = {texts.YOU_FLEW: "you", texts.BOTH_FLEW: "both", texts.NETWORK_FLEW: "network"}
+FLEW = {texts.YOU_FLEW: "you", "You and the network flew": "both", "The network flew": "network"}
 COUNTS = [
     *texts.MEDALS[1:],
     texts.MEDAL_GOLD,
@@ -72,7 +72,7 @@ class Page:
         self.shares = [
             int(found[2]) * (1 if found[1] == "you" else -1)
             for part in parts
-            if (found := re.fullmatch(r"(you|network) (\d+) %", part))
+            if (found := re.fullmatch(r"(you|the network) (\d+) %", part))
         ]
         sides = {share > 0 for share in self.shares}
         by_card = {"both" if len(sides) > 1 else "you" if True in sides else "network"} if sides else set()

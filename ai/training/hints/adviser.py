@@ -11,7 +11,7 @@ from operator import attrgetter
 from typing import Any, Final
 
 from ai.training.config import Config, idle
-from ai.training.hints.curves import RecentCurves
+from ai.training.hints.curves import COLLAPSE, RecentCurves
 from ai.training.hints.rules import RULES, HintRule
 from ai.training.history import History
 
@@ -71,7 +71,8 @@ class Adviser:
             self.reset()
         self._now = now
         run = RecentCurves(history, config, dead_share, clipped_share)
-        settled = run.since_change() >= 100.0  # flights: before that, curves are still those of before the change
+        # Before that, curves are those of before a change, and it is not known yet what that has brought.
+        settled = run.since_change() >= 100.0 * COLLAPSE  # flights
         holding = {rule.name: rule for rule in RULES if (settled or rule.of_settings) and rule.holds(run)}
         self._since = {name: self._since.get(name, now) for name in holding}
         if self.shown is not None and now - self._shown_since < STAY:

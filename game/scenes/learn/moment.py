@@ -14,16 +14,16 @@ import pygame
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision, in_points
 from ai.environment import Floats
-from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, PARAMS, LanderEnv, Outcome
+from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.nn import NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL
 from game.explain.figures import decimal, points
-from game.explain.tables import Part, formula
+from game.explain.tables import Line, Part, formula, table
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
 from game.scenes.learn.chapter import Chapter, Code
@@ -41,11 +41,10 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
-_METRES, _BELOW = 50.0, 1.6  # metres: across the picture, and below the ground
+_METRES, _BELOW = 52.0, 1.2  # metres: across the picture, and below the ground
 _ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
-_NAMES, _FIGURES = 112.0, 62.0  # points for an action's name, and for a figure
 
 
 class Came(NamedTuple):
@@ -70,8 +69,7 @@ class MomentChapter(Chapter):
 
     """
 
-    key, door = "moment", Route("watch")
-    sky: float = 0.72  # share of the picture's height for the flight
+    key, door, shape = "moment", Route("watch"), 0.38
     flying = False
 
     def __init__(self, context: Context) -> None:
@@ -214,11 +212,10 @@ class MomentChapter(Chapter):
                 Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE)]  # fmt: skip
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        world = pygame.FRect(box.left, box.top, box.width, self.sky * box.height)
-        high = _METRES * world.height / world.width
-        view = view_in(world, (0.0, PARAMS.ground - _BELOW + high / 2), _METRES, canvas.scale)
-        with inside(canvas, world):
-            draw_ground(canvas, world, view)
+        high = _METRES * box.height / box.width
+        view = view_in(box, (0.0, PARAMS.ground - _BELOW + high / 2), _METRES, canvas.scale)
+        with inside(canvas, box):
+            draw_ground(canvas, box, view)
             for a, b in pairwise(view.points(self._path).tolist()):
                 canvas.line(a, b, mix(NIGHT1, NET, 0.6), 1.5)
             self._lander.draw(canvas, view, alpha if self.running else 1.0)
@@ -229,27 +226,8 @@ class MomentChapter(Chapter):
         number = texts.LEARN_MOMENT_NUMBER.format(number=self._number + 1, count=len(MOMENTS))
         landed = "landed" if self.over and self.env.outcome[0] == Outcome.LANDED else "lost"
         end = texts.LEARN_MOMENT_ENDS[landed if self.over else "flying" if self.flying else "still"]
-        canvas.text(number, (world.left, world.top + 14), size=SMALL, colour=MUTE)
-        canvas.text(end, (world.right, world.top + 14), size=SMALL, colour=MUTE, align="right")
-        self.draw_worth(canvas, pygame.FRect(box.left, world.bottom, box.width, box.bottom - world.bottom))
-
-    def draw_worth(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the line of points, with the guess, the network's value and what came."""
-        y, (low, high) = box.bottom - 28, SCALE
-
-        def at(score: float) -> float:
-            return box.left + 16 + (box.width - 32) * min(max((score - low) / (high - low), 0.0), 1.0)
-
-        canvas.line((at(low), y), (at(high), y), LINE, 2)
-        for tick in range(int(low), int(high) + 1, 50):
-            canvas.line((at(tick), y - 4), (at(tick), y + 4), FAINT if tick else MUTE)
-            canvas.text(points(tick, 0) if tick else "0", (at(tick), y + 22), size=CAPTION, colour=MUTE, align="centre")
-        canvas.marker("triangle_down", (at(self.guess), y - 12), 11, HUMAN)
-        if self.flying:
-            canvas.line((at(self.value), y - 22), (at(self.value), y), NET)
-            canvas.marker("triangle", (at(self.value), y - 28), 11, NET)
-            canvas.glow((at(self.came), y), 20, INK, 0.3)
-            canvas.dot((at(self.came), y), 6, INK)
+        canvas.text(number, (box.left, box.top + 14), size=SMALL, colour=MUTE)
+        canvas.text(end, (box.right, box.top + 14), size=SMALL, colour=MUTE, align="right")
 
 
 class ChoiceChapter(MomentChapter):
@@ -261,7 +239,7 @@ class ChoiceChapter(MomentChapter):
 
     """
 
-    key, shape, sky = "choice", 0.62, 0.5
+    key, shape = "choice", 0.3
 
     def __init__(self, context: Context) -> None:
         self.results: dict[int, Came] = {}
@@ -325,28 +303,16 @@ class ChoiceChapter(MomentChapter):
         ]
 
     def below(self, column: Column) -> None:
-        column.aside(texts.LEARN_CHOICE_LEGEND)
+        column.add(table(("", *texts.LEARN_CHOICE_HEAD), self._lines))
 
-    def draw_worth(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the six values, and on the same scale what came of each."""
-        shown = [*self.values.tolist(), *(came.came for came in self.results.values())]
-        left, right, pitch = box.left + _NAMES + _FIGURES, box.right - _FIGURES, (box.height - 12) / NUM_ACTIONS
-        low, per_point = min(shown), (right - left - 24) / max(max(shown) - min(shown), 1e-9)
+    def _lines(self) -> list[Line]:
+        """Return each action with its value, and what came of it; bars are on one scale."""
+        came = {action: each.came for action, each in self.results.items()}
+        shown = [*self.values.tolist(), *came.values()]
+        low, span, lines = min(shown), max(max(shown) - min(shown), 1e-9), list[Line]()
         for action, value in enumerate(self.values.tolist()):
-            y, best, came = box.top + 12 + pitch * (action + 0.5), action == self.best, self.results.get(action)
-            colour = NET if best else INK if action == self.first else MUTE
-            x, name = left + 12 + per_point * (value - low), texts.said(ACTION_NAMES[action])
-            if best:
-                canvas.rounded((box.left, y - pitch / 2 + 1, box.width, pitch - 2), 6, NET, 0.1)
-            canvas.text(name, (box.left + 8, y + 4), size=SMALL, colour=colour, room=_NAMES - 8)
-            canvas.text(points(value, 1), (left - 12, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
-            canvas.line((left, y), (right, y), LINE)
-            if came is not None:
-                end = left + 12 + per_point * (came.came - low)
-                canvas.line((x, y), (end, y), mix(NIGHT1, HUMAN, 0.5), 1.5)
-                canvas.dot((end, y), 4.5, HUMAN)
-                canvas.text(points(came.came, 1), (box.right - 8, y + 4), size=SMALL, colour=HUMAN, align="right",
-                            tabular=True)  # fmt: skip
-            if best:
-                canvas.glow((x, y), 18, NET, 0.6)
-            canvas.marker("triangle", (x, y), 11 if best else 9, NET if best else MUTE)
+            brought = points(came[action], 1) if action in came else ""
+            bars = [(each - low) / span for each in (value, came.get(action, low))]
+            cells = (texts.said(ACTION_NAMES[action]), points(value, 1), brought)
+            lines.append(Line(cells, lit=action == self.best, bars=bars))
+        return lines

@@ -29,7 +29,7 @@ _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
 _AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
-_LISTING, _NOTES = 420.0, 230.0  # height of a listing, and width of what stands beside its lines
+_LISTING: Final = 420.0  # height of a listing
 _INDENT: Final = 18.0  # of a verdict, behind its line
 
 
@@ -238,7 +238,7 @@ class ChapterScene(PanelScene):
             column.text(texts.LEARN_NO_SOURCE, size=_BODY, colour=MUTE)
             return
         current, notes = placed(source, code)
-        add_listing(column, _LISTING, lambda: (source, current, notes), _NOTES)
+        add_listing(column, _LISTING, lambda: (source, current, notes))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.explain.agent_lesson import LearnedAlone, Lesson
@@ -12,21 +13,19 @@ from ai.nn import NeuralNetwork
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT0, SMALL
+from game.drawing.tokens import CAPTION, FAINT, HUMAN, MUTE, NET, NIGHT0, SMALL
 from game.explain.figures import points
-from game.explain.tables import Part, formula
+from game.explain.tables import Line, Part, formula, table
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame, pulled
 from game.scenes.lesson.step import LearningStep, Pulls
 from game.ui.panel import Column
 
-_HEIGHT: Final = 220.0  # of the way, and of the six values
+_HEIGHT: Final = 220.0  # of the way
 _PACE: Final = 4  # frames between two steps, while it goes on by itself
 _SPAN: Final = 24  # steps that the way has room for at least
 _MOST: Final = 120  # steps, with which any has arrived
 _LEAST: Final = 240.0  # width of a column
-_NAMES: Final = 108.0  # points for the name of an action
-_FIGURES: Final = 60.0
 
 
 class AloneFrame(Frame):
@@ -80,8 +79,7 @@ class AloneFrame(Frame):
         way, six = column.beside((3, 2), _LEAST)
         way.add(formula(self._figures))
         way.picture(_HEIGHT, self._draw_way)
-        six.caption(texts.LESSON_ALONE_OTHERS)
-        six.picture(_HEIGHT, self._draw_values)
+        six.add(table(texts.LESSON_ALONE_HEAD, self._values))
         column.text(self._told, size=SMALL, colour=MUTE)
 
     def _told(self) -> str:
@@ -118,23 +116,12 @@ class AloneFrame(Frame):
         if alone.arrived:
             canvas.marker("ring", way[-1], 20, HUMAN)
 
-    def _draw_values(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw for each action where its value was, and where it is now."""
+    def _values(self) -> list[Line]:
+        """Return each action's value now, its change, and the bar of it on one scale."""
         before, now = (each / self._scale for each in (self._first, self.alone.outputs))
-        target = self.alone.target / self._scale
-        low, high = min(*before, *now, target), max(*before, *now, target)
-        left, right = box.left + _NAMES, box.right - _FIGURES
-        per_point, pitch = (right - left) / max(high - low, 1e-9), box.height / len(now)
-        for action, (start, end) in enumerate(zip(before.tolist(), now.tolist(), strict=True)):
-            y, lit = box.top + (action + 0.5) * pitch, action == self._action
-            colour = NET if lit else MUTE
-            a, b = (left + per_point * (value - low) for value in (start, end))
-            canvas.text(said_action(action), (box.left, y + 4), size=SMALL, colour=INK if lit else MUTE, room=_NAMES)
-            canvas.line((left, y), (right, y), LINE)
-            canvas.line((a, y), (b, y), colour, 2)
-            canvas.dot((a, y), 3, FAINT)
-            canvas.dot((b, y), 5 if lit else 4, colour)
-            if lit:
-                canvas.marker("ring", (left + per_point * (target - low), y), 14, HUMAN)
-            canvas.text(points(end - start), (box.right, y + 4), size=SMALL, colour=colour, align="right",
-                        tabular=True)  # fmt: skip
+        low, span = float(min(*before, *now)), max(float(np.ptp([*before, *now])), 1e-9)
+        return [
+            Line((said_action(action), points(end), points(end - start)), lit=action == self._action,
+                 bars=[(end - low) / span])
+            for action, (start, end) in enumerate(zip(before.tolist(), now.tolist(), strict=True))
+        ]  # fmt: skip

@@ -65,7 +65,7 @@ class NetworkFrame(Frame):
         self.view.hover(place)
 
     def update(self, still: bool) -> None:
-        self.view.update(at_once=still)
+        self.view.update()
 
     def _draw(self, canvas: Canvas) -> None:
         """Draw the network; each unit explains itself."""

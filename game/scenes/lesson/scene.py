@@ -15,7 +15,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.explain.explained import Explained
-from game.explain.lesson_door import ImageDoor
+from game.explain.lesson_door import LessonDoor
 from game.input.controls import Command
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.frame import CodeWalk, Frame
@@ -107,7 +107,7 @@ class LessonScene(PanelScene):
 
     """
 
-    def __init__(self, context: Context, lesson: Lesson | DigitLesson, door: ImageDoor | None = None) -> None:
+    def __init__(self, context: Context, lesson: Lesson | DigitLesson, door: LessonDoor | None = None) -> None:
         super().__init__(context)
         self._door, self.current, self.in_code = door, 0, False
         self.explained = Explained()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Final
@@ -119,11 +119,9 @@ def draw_on_line(canvas: Canvas, box: pygame.FRect, ends: tuple[float, float], m
     return [start, now, target]
 
 
-Curve = Callable[[float], float]
-_VALUES, _CHART = 72.0, 180.0  # heights
+_LINE, _CHART = 72.0, 180.0  # heights
 _POINTS: Final = 121  # of a curve
 _WIDEST: Final = 1.15  # the axis reaches so many times as far as the largest error of the batch
-_CURVE: Final = 260.0  # width of a chart
 
 
 class ErrorFrame(Frame):
@@ -136,11 +134,8 @@ class ErrorFrame(Frame):
         said = texts.LESSON_TOO[error > 0].format(by=decimal(abs(error), 2)) if error else ""
         functions = (DeepQAgent.gradient_step, self._cost.function, self._cost.derivative)
         super().__init__(words, in_points(error), functions, "errors", sentence=f"{words[1]} {said}".strip())
-        largest = max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
-        self._delta = float(self._cost.options.get("delta", 0.0))
-        # Where errors are far from the bend of the cost, the bend is out of sight, and the curves say so truly.
-        self._reach = max(_WIDEST * largest, 1.2 * self._delta if largest > 0.3 * self._delta else 0.0)
-        self._cache = PaintCache(most=2)
+        self._reach = _WIDEST * max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
+        self._cache = PaintCache()
 
     def cost_of(self, error: float) -> float:
         """Return the cost of one memory with an error, in the network's own scale."""
@@ -151,19 +146,13 @@ class ErrorFrame(Frame):
         return float(self._cost.derivative(np.array([error]), np.array([0.0]))[0])
 
     def describe(self, column: Column) -> None:
-        column.picture(_VALUES, self._draw_line)
-        cost = self._lesson.config.cost
-        curves = ((texts.LESSON_COSTS[cost], self.cost_of, texts.LESSON_COST_HELP),
-                  (texts.LESSON_PUSH, self.push_of, texts.LESSON_PUSH_HELP))  # fmt: skip
-        for side, (title, curve, help_) in zip(column.beside((1, 1), _CURVE), curves, strict=True):
-            rows = told((texts.LESSON_ERROR, points(self._lesson.error / self._scale)),
-                        (texts.LESSON_OWN_SCALE, signed(self._lesson.error)),
-                        (title, number(curve(self._lesson.error))))  # fmt: skip
-            side.caption(title)
-            side.picture(_CHART, partial(self._draw_curve, curve))
-            side.rows[-1].what, side.rows[-1].now = help_, partial(str, rows)
+        column.picture(_LINE, self._draw_line)
+        cost, delta = self._lesson.config.cost, float(self._cost.options.get("delta", 0.0))
+        column.caption(texts.LESSON_COSTS[cost])
+        column.picture(_CHART, self._draw_curve)
+        column.explain(texts.LESSON_COST_HELP)
         column.add(formula(self._result))
-        column.aside(texts.LESSON_BENDS[cost].format(delta=f"{self._delta / self._scale:g}"))
+        column.aside(texts.LESSON_BENDS[cost].format(delta=f"{delta / self._scale:g}"))
 
     def _result(self) -> list[Part]:
         """Return how the push of this memory becomes what goes back into the network."""
@@ -188,32 +177,30 @@ class ErrorFrame(Frame):
         for x, value, word, colour in ((here, predicted, texts.LESSON_PREDICTED, NET),
                                        (there, target, texts.LESSON_TARGET, HUMAN)):  # fmt: skip
             canvas.text(f"{word} {points(value)}", (x, y - 16), size=SMALL, colour=colour, align="centre", tabular=True)
-        middle = ((here + there) / 2, y + 22)
         told_error = f"{texts.LESSON_ERROR} {points(lesson.error / self._scale)}"
-        canvas.text(told_error, middle, size=SMALL, colour=MUTE, align="centre", tabular=True)
+        canvas.text(told_error, ((here + there) / 2, y + 22), size=SMALL, colour=MUTE, align="centre", tabular=True)
         canvas.explain((ends[0], y - 6, ends[1] - ends[0], 12), texts.LESSON_ERROR_HELP)
 
-    def _draw_curve(self, curve: Curve, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw a curve over errors, with each memory of the batch on it."""
+    def _draw_curve(self, canvas: Canvas, box: pygame.FRect) -> None:
         chart = pygame.FRect(0, 8, box.width, box.height - 28)
-        self._cache.draw(canvas, box, curve.__name__, lambda sheet: self._paint_curve(sheet, chart, curve))
+        self._cache.draw(canvas, box, (), lambda sheet: self._paint_curve(sheet, chart))
 
-    def _paint_curve(self, sheet: Canvas, box: pygame.FRect, curve: Curve) -> None:
+    def _paint_curve(self, sheet: Canvas, box: pygame.FRect) -> None:
+        """Paint the cost over errors, with each memory of the batch on it."""
         errors, own = np.linspace(-self._reach, self._reach, _POINTS).tolist(), self._lesson.error
-        low, high = min(0.0, *map(curve, errors[:: _POINTS - 1])), max(0.0, *map(curve, errors[:: _POINTS - 1]))
+        high = max(self.cost_of(self._reach), 1e-12)
 
         def place(error: float) -> tuple[float, float]:
             x = box.left + box.width * (error + self._reach) / (2 * self._reach)
-            return x, box.bottom - box.height * (curve(error) - low) / max(high - low, 1e-12)
+            return x, box.bottom - box.height * self.cost_of(error) / high
 
-        base = place(0.0)[1]
         sheet.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
-        sheet.line((box.left, base), (box.right, base), LINE)
+        sheet.line((box.left, box.bottom), (box.right, box.bottom), LINE)
         for start, end in pairwise(map(place, errors)):
             sheet.line(start, end, MUTE, 1.5)
         for error in np.delete(self._lesson.batch_errors, self._lesson.step.row).tolist():
             sheet.dot(place(error), 1.8, FAINT)
-        sheet.line((place(own)[0], base), place(own), EMBER, 1.5)
+        sheet.line((place(own)[0], box.bottom), place(own), EMBER, 1.5)
         sheet.dot(place(own), 4.5, INK)
         widest, y = points(self._reach / self._scale, 1), box.bottom + 18
         sheet.text(widest.replace("+", "−"), (box.left, y), size=CAPTION, colour=MUTE)
@@ -221,8 +208,7 @@ class ErrorFrame(Frame):
         sheet.text(texts.LESSON_POINTS.format(points=widest), (box.right, y), size=CAPTION, colour=MUTE, align="right")
 
 
-_MOVED, _ROW = 60.0, 30.0  # heights
-_NAMES, _FIGURES = 0.52, 0.66  # of the width: where names and figures of pulls end
+_MOVED: Final = 60.0  # height
 
 
 class AfterFrame(Frame):
@@ -263,7 +249,7 @@ class AfterFrame(Frame):
         if self._found:
             column.gap(8)
             column.aside(texts.LESSON_PULLS)
-            column.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
+            column.beside((1, 1), _LEAST)[0].add(table((), self._lines))
 
     def _draw_value(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the value before and after, and its target."""
@@ -271,17 +257,11 @@ class AfterFrame(Frame):
         for x, value, word in zip(places, self._values, texts.LESSON_VALUE_MARKS, strict=True):
             canvas.explain((x - 6, y - 6, 12, 12), word, partial(self._write, value))
 
-    def _draw_pulls(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw a bar for each pull: blue towards the target, orange away from it."""
-        found, (before, _, target) = self._found, self._values
-        most, zero = max(1e-12, *map(abs, found)), box.left + 0.83 * box.width
-        canvas.line((zero, box.top), (zero, box.bottom), LINE)
-        for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
-            y, length = box.top + _ROW * row + 19, 0.16 * box.width * pull / most
-            canvas.text(word.format(count=self.step.examples - (row > 0)), (box.left, y), size=SMALL, colour=MUTE,
-                        room=_NAMES * box.width)  # fmt: skip
-            end = box.left + _FIGURES * box.width
-            canvas.text(pulled(pull), (end, y), size=SMALL, align="right", tabular=True)
-            area = canvas.rect(min(zero, zero + length), y - 8, max(abs(length), 1), 7)
-            canvas.fill(area, NET if pull * (target - before) >= 0 else EMBER)
-            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(pulled, pull))
+    def _lines(self) -> list[Line]:
+        """Return a line for each pull; those towards the target are lit."""
+        (before, _, target), most = self._values, max(1e-12, *map(abs, self._found))
+        return [
+            Line((word.format(count=self.step.examples - (row > 0)), pulled(pull)), help_,
+                 lit=pull * (target - before) >= 0, bars=[abs(pull) / most])
+            for row, (pull, (word, help_)) in enumerate(zip(self._found, texts.LESSON_PULL_PARTS, strict=True))
+        ]  # fmt: skip

@@ -25,8 +25,7 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.explain.timeline import Timeline, runs
-from game.export.export import Export
+from game.export.film import Export
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
@@ -35,6 +34,7 @@ from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay, flown_elsewhere
 from game.input.controls import Command
 from game.scenes.logbook.claim import BELOW_CLAIM, Claimed
+from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
@@ -46,8 +46,7 @@ from game.ui.playback import Playback
 from game.ui.rows import ButtonRow
 from game.ui.widget import Widget
 from game.world.camera import ClearArea, View
-from game.world.path_preview import draw_futures
-from game.world.paths import draw_faint
+from game.world.paths import draw_faint, draw_futures
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
@@ -344,7 +343,8 @@ class ReplayScene(FormScene):
         canvas = canvas.at(0, -1)
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
         by_hand = flight.flown_by is StickHolder.HUMAN
-        by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]
+        other = networks.sentence(texts.NETWORK_FLEW, networks.flew(self.record.entry.network))
+        by = texts.FRIEND_FLEW[by_hand] if self.claimed else texts.YOU_FLEW if by_hand else other
         if self.ended:
             by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)

@@ -17,6 +17,7 @@ from game.flight.becoming import KINDS, curves, kind_of, said, tells
 from game.flight.flight_file import Entry, Record
 from game.flight.friend import copy, paste
 from game.flight.logbook import Records, best
+from game.flight.networks import flew
 from game.flight.outcomes import ending_word
 from game.ui.actions import Action, Table
 from game.ui.listing import Row
@@ -208,14 +209,14 @@ class LogbookScene(PanelScene):
 
 def who_and_when(entry: Entry) -> str:
     """Return when a flight ended, and who flew it."""
-    by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
+    by = {1.0: texts.LOGBOOK_YOU, 0.0: flew(entry.network)}.get(entry.human, texts.LOGBOOK_SHARED)
     return f"{time.strftime('%H:%M', time.localtime(entry.when))}, {by}"
 
 
 def why_in_brackets(entry: Entry) -> str:
     """Return the points of a flight that does not count, as its row has them, and why; empty if it counts."""
     points = texts.LOGBOOK_UNCOUNTED.format(points=entry.score)
-    return f"{points}: {texts.NOT_COUNTED[entry.bar]}" if entry.bar else ""
+    return f"{points}: {texts.NOT_COUNTED[entry.bar].format(who=flew(entry.network))}" if entry.bar else ""
 
 
 def entry_row(entry: Entry) -> Row:

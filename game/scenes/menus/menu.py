@@ -15,7 +15,7 @@ from game.drawing.cursor import LEADING
 from game.drawing.prose import lines
 from game.drawing.tokens import INK, MUTE, STEP, TEXT, VIEW_SIZE
 from game.flight.days import Days
-from game.flight.logbook import Records, best_descent
+from game.flight.logbook import Records, best_descent, ladder_rung
 from game.input.controls import Command
 from game.scenes.menus.background import MenuBackground
 from game.ui.actions import Action, Table
@@ -138,14 +138,14 @@ class FlightsScene(_OverMoon):
 
     def _prepare(self) -> None:
         """Read how far the player is."""
-        context, rung = self.context, self.context.settings.rung
+        context, settings = self.context, self.context.settings
         records, days = Records(context.user_dir), Days(context.user_dir)
         entries = records.entries()
         gold = {entry.course for entry in entries if entry.medal == 3 and not entry.outdated and entry.alone}
         attempt = days.attempts.get(self._today.isoformat())
         best = best_descent(entries)[0]
         self._figures = {
-            "free": texts.FLIGHTS_RUNG.format(number=max(0, rung) + 1) if rung < TOP_RUNG else texts.FLIGHTS_ANYWHERE,
+            "free": self._free(ladder_rung(settings, entries)),
             "day": texts.FLIGHTS_FLOWN if attempt else texts.DAYS_NOT_FLOWN,
             "missions": texts.FLIGHTS_GOLD.format(gold=len(gold & MISSIONS.keys()), count=len(MISSIONS)),
             "descent": texts.DESCENT_LEGS.format(count=best) if best else "",
@@ -153,6 +153,12 @@ class FlightsScene(_OverMoon):
         }
         if problem := records.problem or days.problem:
             context.note(problem)
+
+    def _free(self, rung: int) -> str:
+        """Say from where a free flight begins."""
+        if self.context.settings.three_pads:
+            return texts.THREE_PADS.lower()
+        return texts.FLIGHTS_RUNG.format(number=rung + 1) if rung < TOP_RUNG else texts.FLIGHTS_ANYWHERE
 
     def describe(self, panel: Panel) -> None:
         panel.title(texts.FLIGHTS_TITLE)

@@ -28,7 +28,6 @@ from game.world.camera import View
 from game.world.grip import Grip
 
 _PICTURE, _LISTING = 344.0, 400.0  # heights
-_NOTES: Final = 164.0  # points for the numbers beside the code
 _LEAST: Final = 420.0  # width of a column
 _SHARE: Final = 0.42  # of the picture's height that the two bodies fill
 _WIDER: Final = 2.6  # how much more is shown where all boxes are
@@ -131,7 +130,7 @@ class PhysicsStepScene(PanelScene):
         if source is None:
             draw_wrapped(canvas, texts.STEP_NO_SOURCE, (box.left, box.top + 14), box.width, colour=MUTE)
             return
-        draw_listing(canvas, box, source, piece.line, piece.notes, notes_width=_NOTES if piece.notes else 0.0)
+        draw_listing(canvas, box, source, piece.line, piece.notes)
 
     # The picture: the bodies near a contact, and what the engine has found out about them there
 

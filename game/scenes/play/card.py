@@ -11,7 +11,7 @@ import pygame
 
 from game.core import texts
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE, Colour
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
 from game.explain.readouts import draw_share
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.scenes.play.head import LADDER, draw_ladder
@@ -27,7 +27,6 @@ _COVER: Final = 0.94  # opacity: neither the Earth nor a path shines through the
 _AROUND: Final = 16.0  # least points from the sides of the window
 _NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
 _TOP: Final = 136.0  # of the card, in a window with room
-_NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
 _LAMP: Final = 13.0  # points from one lamp to the next
 _RING_PARTS: Final = 14
 _FIGURES: Final = LEADING * LABEL + 4 + LEADING * TITLE  # points of a row of figures
@@ -40,8 +39,7 @@ PLACES: Final = (0.5, 0.0, 1.0)
 class ShownCard:
     """Card on the screen: `shown` 0 to 1 of the way in, with its `hints` at the foot.
 
-    `advise` is whether advice is wanted. The lamps of a medal light up one after another; they have done so for `lit`
-    seconds.
+    `advise` is whether advice is wanted.
     """
 
     card: OutcomeCard
@@ -49,7 +47,6 @@ class ShownCard:
     shown: float = 1.0
     advise: bool = True
     rival: RivalOutcome | None = None
-    lit: float = math.inf
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         """Return the card's box, in points of a canvas for text that flows."""
@@ -92,47 +89,42 @@ class ShownCard:
         for words, colour in ((card.quality, HUMAN), (advice, MUTE), (card.bare, NET), (card.assists, HUMAN)):
             if words:
                 rows.gap(3)
-                _aside(rows, words, colour)
+                rows.styled(words, SMALL, colour)
         rows.gap(12)
         self._write_figures(rows)
         self._write_rival(rows)
-        for words, figure in card.compared:
-            small = rows.in_style(SMALL, MUTE)
-            small.pair(words, figure, INK)
-            rows.y = small.y
+        self._write_scores(rows)
         self._write_share(rows)
         if card.rung is not None and card.climb:
             if rows.canvas:
                 draw_ladder(rows.canvas, rows.left + 1, rows.in_style(SMALL).baseline, card.rung)
-            _aside(rows, card.climb, INK, LADDER + 8)
+            rows.styled(card.climb, SMALL, INK, indent=LADDER + 8)
             rows.gap(4)
 
     def _write_title(self, rows: Cursor) -> None:
-        """Write how it ended after a sign, and its points or its medal at the right, or below."""
-        card, canvas = self.card, rows.canvas
-        palette = canvas.palette if canvas else None
-        colour = INK if card.intact or palette is None else palette.good if card.good else palette.warn
-        title = replace(rows, left=rows.left + _SIGN, width=rows.width - _SIGN).in_style(TITLE, colour)
-        wide = rows.in_style(TEXT).measured(card.score) + (18 + _LAMP * card.medal if card.medal or card.ring else 0)
-        beside = title.measured(card.title) + wide + 24 <= title.width
-        baseline = title.baseline
-        if canvas:
+        """Write how it ended, after a sign."""
+        card = self.card
+        colour = INK if card.intact else rows.palette.good if card.good else rows.palette.warn
+        if rows.canvas:
             mark: Shape = "check" if card.good else "diamond" if card.intact else "cross"
-            canvas.glow((rows.left + 10, baseline - 8), 30, colour, 0.5 * self.shown)
-            canvas.marker(mark, (rows.left + 10, baseline - 8), 18, colour)
-        title.text(card.title)
-        if card.score and not beside:
-            title.gap(BASELINE * TEXT - TEXT)
-            baseline = title.y + TEXT
-            title.gap(LEADING * TEXT)
-        if canvas and card.score:
-            right = rows.right if beside else rows.left + _SIGN + wide
-            box = canvas.text(card.score, (right, baseline), size=TEXT, colour=HUMAN, align="right")
-            last = box.left - 14, baseline - 5
-            if card.ring:
-                _draw_ring(canvas, last)
-            draw_lamps(canvas, last, card.medal, self.lit)
-        rows.y = title.y
+            place = rows.left + 10, rows.in_style(TITLE).baseline - 8
+            rows.canvas.glow(place, 30, colour, 0.5 * self.shown)
+            rows.canvas.marker(mark, place, 18, colour)
+        rows.styled(card.title, TITLE, colour, indent=_SIGN)
+
+    def _write_scores(self, rows: Cursor) -> None:
+        """Write the score behind the lamps of its medal, and below it others from the same start."""
+        card, small = self.card, rows.in_style(SMALL, MUTE)
+        if card.score:
+            if rows.canvas:
+                last = rows.right - small.measured(card.score, tabular=True) - 14, small.baseline - 4
+                if card.ring:
+                    _draw_ring(rows.canvas, last)
+                draw_lamps(rows.canvas, last, card.medal)
+            small.pair(texts.CARD_SCORE, card.score, HUMAN)
+        for words, figure in card.compared:
+            small.pair(words, figure, INK)
+        rows.y = small.y
 
     def _write_figures(self, rows: Cursor) -> None:
         """Write the figures of the flight side by side, in two rows where their names need it."""
@@ -175,20 +167,13 @@ class ShownCard:
             top = rows.y
             if canvas:
                 canvas.marker("diamond", (rows.left + 6, rows.in_style(SMALL).baseline - 4), 8, NET)
-            _aside(rows, told, MUTE, 18)
+            rows.styled(told, SMALL, MUTE, indent=18)
             if canvas and card.watched:
                 canvas.explain((rows.left, top, rows.width, rows.y - top), texts.EXPLAIN_CARD_SAVED)
         rows.gap(18)
         if canvas:
-            draw_share(canvas, rows.left, rows.y, rows.width, card.human)
+            draw_share(canvas, rows.left, rows.y, rows.width, card.human, card.who)
         rows.gap(22)
-
-
-def _aside(rows: Cursor, words: str, colour: Colour, left: float = 0.0) -> None:
-    """Write small words, `left` points from the left."""
-    small = replace(rows, left=rows.left + left, width=rows.width - left).in_style(SMALL, colour)
-    small.text(words)
-    rows.y = small.y
 
 
 def _figure(canvas: Canvas, value: str, unit: str, place: Point, size: float) -> None:
@@ -196,17 +181,11 @@ def _figure(canvas: Canvas, value: str, unit: str, place: Point, size: float) ->
     canvas.text(unit, (box.right + 4, place[1]), size=LABEL, colour=MUTE)
 
 
-def draw_lamps(canvas: Canvas, last: Point, medal: int, lit: float = math.inf) -> None:
-    """Draw the lamps of a medal from right to left, three for gold, each with a flash as it lights, after `lit` s."""
+def draw_lamps(canvas: Canvas, last: Point, medal: int) -> None:
+    """Draw the lamps of a medal from right to left, three for gold."""
     for lamp in range(medal):
-        age, place = lit - _NEXT_LAMP * (lamp + 1), (last[0] - _LAMP * lamp, last[1])
-        if age < 0:
-            canvas.dot(place, 4, FAINT)
-            continue
-        flash = math.exp(-age / _FLASH)
-        if lit < math.inf:
-            canvas.glow(place, 14 + 30 * flash, MEDALS[medal], 0.35 + 1.6 * flash)
-        canvas.dot(place, 4 + 3 * flash, MEDALS[medal])
+        canvas.glow((last[0] - _LAMP * lamp, last[1]), 14, MEDALS[medal], 0.35)
+        canvas.dot((last[0] - _LAMP * lamp, last[1]), 4, MEDALS[medal])
 
 
 def _draw_ring(canvas: Canvas, place: Point) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from ai.flights.recording import AS_IT_IS
@@ -20,11 +21,11 @@ from game.flight import sharing
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry, Record
-from game.flight.networks import Network, Policy, titled
+from game.flight.networks import Network, Policy, titled, who
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, ReplayedFlight, flown_elsewhere
 from game.input.controls import Controls
-from game.scenes.play.ghost import Ghost
+from game.scenes.play.ghost import Ghost, Named
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -73,6 +74,9 @@ class Challenge:
     ahead: Ground | None = None
     stake: tuple[str, str] | None = None
     _help: Settings | None = None
+
+    def word(self) -> None:
+        """Set its texts, at first and whenever the language has changed."""
 
     # Before a flight
 
@@ -173,26 +177,41 @@ class Challenge:
         """Leave the challenge for free flights."""
 
 
-class Duel(Challenge):
+class _Beside(Challenge):
+    """A flight beside a rival's ghost, called by its name."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self.word()
+
+    def word(self) -> None:
+        self.title, self.line = texts.RACE, texts.DUEL_RIVAL.format(name=self._name)
+        self.opening = texts.DUEL_BEGIN.format(name=self._name)
+
+
+class Duel(_Beside):
     """Duel: one start after another against a rival."""
 
     fixed = False
 
     def __init__(self, rival: Policy, name: str) -> None:
-        self._rival, self._name, self.title = rival, name, texts.DUEL
-        self.line, self.opening = texts.DUEL_RIVAL.format(name=name), texts.DUEL_BEGIN.format(name=name)
+        super().__init__(name)
+        self._rival = rival
+
+    def word(self) -> None:
+        super().word()
+        self.title = texts.DUEL
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
         return Ghost(Flight(seed, self._rival), self._name)
 
 
-class Race(Challenge):
+class Race(_Beside):
     """Race: the start of a recorded flight, against its ghost."""
 
     def __init__(self, record: Record, name: str) -> None:
-        self._recording, self._name, self.title = record.recording, name, texts.RACE
-        self.elsewhere = flown_elsewhere(record.recording)
-        self.line, self.opening = texts.DUEL_RIVAL.format(name=name), texts.DUEL_BEGIN.format(name=name)
+        super().__init__(name)
+        self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         flight = _as_begun(self._recording, seed, network)
@@ -209,12 +228,15 @@ class ContinuedFlight(Challenge):
     bar = "flown_on"
 
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
-        self.title, self.opening = texts.FLY_ON, texts.FLY_ON_BEGIN
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
         self.elsewhere = flown_elsewhere(self._recording)
         self.name = self._recording.mission or flight_replay.record.entry.course
-        self.line = texts.FLY_ON_LINE.format(seconds=flight_replay.at / 60)
+        self.word()
+
+    def word(self) -> None:
+        self.title, self.opening = texts.FLY_ON, texts.FLY_ON_BEGIN
+        self.line = texts.FLY_ON_LINE.format(seconds=self._step / 60)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         return self._put(_as_begun(self._recording, seed, network))
@@ -247,16 +269,22 @@ class FlownMission(Challenge):
         self,
         mission: Mission,
         rival: Record | None = None,
-        rival_name: str = "",
+        rival_name: Named = "",
         following: Callable[[], Challenge] | None = None,
     ) -> None:
         self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
         self._following = following
-        self._rival, self._rival_name = rival.recording if rival else None, rival_name or texts.MISSION_RIVAL
+        self._rival, self._rival_name = rival.recording if rival else None, rival_name
+        self._landed = False
+        self.word()
+
+    def word(self) -> None:
         self.title = texts.MISSION
-        self.line, self.opening = texts.MISSIONS[mission.name]
-        self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
-        self.new_hint = texts.MISSION_NEXT if following else ""
+        self.line, self.opening = texts.MISSIONS[self.name]
+        self.goal = texts.MISSION_GOAL.format(fuel=self.mission.gold[0], seconds=self.mission.gold[1])
+        self.new_hint = texts.MISSION_NEXT if self._following else ""
+        if self._landed:
+            self.again_hint = texts.MISSION_AGAIN
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         return Flight(seed, network, mission=self.name, easing=self.easing)
@@ -264,7 +292,7 @@ class FlownMission(Challenge):
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         if self._rival:
             return Ghost(ReplayedFlight(self._rival), self._rival_name)
-        return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
+        return Ghost(Flight(seed, network, mission=self.name), partial(who, network)) if network else None
 
     def following(self) -> Challenge | None:
         return self._following() if self._following else None
@@ -272,8 +300,8 @@ class FlownMission(Challenge):
     def settle(self, flight: Flight, credit: Credit) -> None:
         """Keep a landing as the ghost of the next try."""
         if flight.outcome is Outcome.LANDED and flight.share > 0:
-            self._rival, self._rival_name = flight.recording, texts.GHOST_BEFORE
-            self.again_hint = texts.MISSION_AGAIN
+            self._rival, self._rival_name, self._landed = flight.recording, lambda: texts.GHOST_BEFORE, True
+            self.word()
 
     def medal(self, flight: Flight) -> int:
         if flight.outcome is not Outcome.LANDED:

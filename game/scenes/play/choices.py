@@ -35,7 +35,7 @@ class ChoicesScene(PanelScene):
     ) -> None:
         super().__init__(context)
         self._begun, self._free, self._helped = begun, free, helped or context.settings
-        self._behind = StillPicture(getattr(below, "bare", below), dimmed=0.7)
+        self._behind = StillPicture(below, dimmed=0.7)
         self.build()
 
     def describe(self, panel: Panel) -> None:

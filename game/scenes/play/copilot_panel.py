@@ -19,7 +19,7 @@ from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.explain.readouts import draw_share
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import HELD, SixFutures
-from game.flight.networks import QPolicy
+from game.flight.networks import QPolicy, flew, word
 from game.scenes.play.words import Why, why_by_futures, why_by_values
 from game.ui.listing import shortened
 
@@ -35,7 +35,6 @@ _VALUES: Final = 62  # first baseline of the values, from the panel's top
 _WHY: Final = _VALUES + int(HEIGHT) + 20
 _PADS: Final = _WHY + 114  # the first pad's row
 _NAME: Final = 96.0  # for a pad's name, before its bar
-_STAYS: Final = 50  # steps that the message on an override stays, to be read
 
 
 class CopilotPanel:
@@ -53,35 +52,35 @@ class CopilotPanel:
         self.shown = False
         self.values: QValues | Landings | None = None
         self.why: Why = ("", "", "")
-        self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
+        self._factors = [pad.factor for pad in ground.pads]
+        self._overridden = False  # whether the co-pilot flies something else than was asked for
         self._likely: list[float] = []  # of each of several pads that it is meant
         self._recent = RecentLandings()
-        self._override: Why | None = None  # explanation of the latest override, while it is still shown
-        self._stays = 0
         self._seen: object = None
+
+    def forget(self) -> None:
+        """Say anew what is said, in another language."""
+        self._seen = None
 
     def follow(self, flight: Flight, futures: SixFutures | None = None) -> None:
         """Update the panel after a step; `futures` are those of a flight that nobody shares."""
         if flight.over:
             return
-        self._stays = max(0, self._stays - 1)
-        if not self._stays:
-            self._override = None
         alone = flight.hand is StickHolder.NETWORK and isinstance(flight.network, QPolicy)
         decision = flight.alone if alone else flight.decision if flight.shared else None
         if decision is None and futures:
             self.shown, self._seen, self._likely = True, None, []
-            self.values, self._override = landings_of(futures, flight), None
+            self.values = landings_of(futures, flight)
             self.why = ("" if flight.shared else texts.SIX_FUTURES_WHY, "", "")
             return
-        self.shown = decision is not None
+        self.shown, self._overridden = decision is not None, self._overridden and decision is self._seen
         if decision is None or decision is self._seen:
             return
         self._seen = decision
         if decision is flight.alone:
             self.values, self._likely = QValues.of(flight.alone), []
             first, second = decision_words(flight.alone)
-            self.why, self._override = (texts.COPILOT_PANEL_ALONE, first, second), None
+            self.why = texts.COPILOT_PANEL_ALONE, first, second
         elif flight.decision is not None:
             self._explain(flight.decision, int(flight.env.target[0]))
 
@@ -94,10 +93,7 @@ class CopilotPanel:
             self.values, self.why = self._recent.fill(landings), why_by_futures(decision, landings)
         else:
             self.values, self.why = shared_values(decision, pad), why_by_values(decision, pad)
-        if self.values.asked is None:
-            self._override = None
-        elif decision.overridden[0]:
-            self._override, self._stays = self.why, _STAYS
+        self._overridden = bool(decision.overridden[0])
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         """Return where it stands, in points of a canvas for text that flows."""
@@ -115,10 +111,10 @@ class CopilotPanel:
         looks = isinstance(self.values, Landings)
         title = canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH - 60)
         room = left + _WIDTH - title.right - 12
-        name = shortened(canvas, network, SMALL, room)
+        name = shortened(canvas, word(network), SMALL, room)
         canvas.text(name, (left + _WIDTH, top + 34), size=SMALL, colour=NET, align="right", room=room)
         if isinstance(self.values, Landings):
-            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH)
+            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH, flew(network))
         elif self.values is not None:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
@@ -127,15 +123,12 @@ class CopilotPanel:
             self._draw_pads(canvas, left, top + _PADS)
         if share is not None:
             y = top + _WHY + 104 + box.height - _SIZE[1]
-            draw_share(canvas, left, y, _WIDTH, share)
+            draw_share(canvas, left, y, _WIDTH, share, flew(network))
             canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
-        """Draw whose action is flown; the latest override stays for a moment, marked as past."""
-        title, *lines = self._override or self.why
-        if self._override not in (None, self.why):
-            title = texts.COPILOT_PANEL_BEFORE.format(title=title)
-        canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
+        title, *lines = self.why
+        canvas.text(title, (left, top), colour=NET if self._overridden else INK, room=_WIDTH)
         canvas.explain((left, top - 16, _WIDTH, 62), texts.EXPLAIN_COPILOT_WHY)
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
@@ -144,8 +137,9 @@ class CopilotPanel:
         surest = max(self._likely)
         canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
         canvas.explain((left, top - 34, _WIDTH, 92), texts.EXPLAIN_COPILOT_MEANT)
-        for number, (name, chance) in enumerate(zip(self._names, self._likely, strict=True)):
+        for number, (factor, chance) in enumerate(zip(self._factors, self._likely, strict=True)):
             y, likeliest = top + 22 * number, chance == surest
+            name = texts.PAD_NAMES.get(factor, "")
             canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
             bar = (left + _NAME, y - 1.5, _WIDTH - _NAME, 3)
             canvas.bar(bar, chance, HUMAN if likeliest else mix(FAINT, HUMAN, 0.45))

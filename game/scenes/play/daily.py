@@ -53,20 +53,23 @@ class DailyStart(Challenge):
     alone = eases = True
 
     def __init__(self, day: date, days: Days, *, past: bool = False) -> None:
-        self.title, self.copy_hint = texts.DAILY, texts.DAILY_HINT_COPY
         self.seed, self.line = day.toordinal(), day.isoformat()
         self._day, self._days, self._past = day, days, past
         self._begun = False
         self._look()
 
+    def word(self) -> None:
+        self.title, self.copy_hint = texts.DAILY, texts.DAILY_HINT_COPY
+        openings = {"day_past": texts.DAILY_PAST_BEGIN, "day_again": texts.DAILY_AGAIN_BEGIN}
+        self.opening = openings.get(self.bar, texts.DAILY_FIRST_BEGIN)
+
     def _look(self) -> None:
         """See whether the next flight is the first attempt."""
         if self._past:
-            self.bar, self.opening = "day_past", texts.DAILY_PAST_BEGIN
+            self.bar = "day_past"
         elif self.line in self._days.attempts:
-            self.bar, self.opening = "day_again", texts.DAILY_AGAIN_BEGIN
-        else:
-            self.opening = texts.DAILY_FIRST_BEGIN
+            self.bar = "day_again"
+        self.word()
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         """Begin a flight with three pads among hills."""
@@ -77,8 +80,10 @@ class DailyStart(Challenge):
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the player's best flight of that day as a ghost, in practice only."""
         record = self._days.best_flight(self._day) if self.bar else None
-        name = texts.DAILY_GHOST if self._past else texts.DAILY_GHOST_TODAY
-        return Ghost(ReplayedFlight(record.recording), name) if record else None
+        return Ghost(ReplayedFlight(record.recording), self._ghost_name) if record else None
+
+    def _ghost_name(self) -> str:
+        return texts.DAILY_GHOST if self._past else texts.DAILY_GHOST_TODAY
 
     def follow(self, flight: Flight) -> str:
         """Note the first attempt as soon as it begins; it is lost with another start."""

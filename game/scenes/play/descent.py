@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -25,7 +26,7 @@ from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
 from game.flight.logbook import best_descent
-from game.flight.networks import Policy
+from game.flight.networks import Policy, sentence, who
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight
 from game.scenes.play.challenge import Challenge
@@ -60,7 +61,6 @@ class Descent(Challenge):
     fixed = compares = False
 
     def __init__(self) -> None:
-        self.title, self.again_hint, self.new_hint = texts.DESCENT_TITLE, texts.DESCENT_AGAIN, texts.DESCENT_NEW
         self.best, self._seed = (0, 0), -1
         self._flown: list[Recording] = []
         self._before: list[Recording] = []  # an earlier run over the same ground
@@ -71,6 +71,7 @@ class Descent(Challenge):
         self.legs = self.total = self.streak = 0
         self.bar, self._landed, self._counts = "", False, True
         self._points, self._gained, self._since = 0, 0.0, 0
+        self._relief = ""  # who flew the last leg in the player's place
 
     def recall(self, entries: Iterable[Entry]) -> None:
         self.best = max(self.best, best_descent(entries))
@@ -84,7 +85,7 @@ class Descent(Challenge):
         self.stake = lost if self.legs else None
         # The ground of the next leg, as it will be unless this one ends on a flat spot.
         self.ahead = leg_of(seed, LegStart(self.start.number + 1)).ground
-        self._name()
+        self.word()
         return Flight(seed, network, leg=self.start)
 
     def _start_run(self, seed: int) -> None:
@@ -96,8 +97,9 @@ class Descent(Challenge):
         self._seed = seed
         self._clear()
 
-    def _name(self) -> None:
+    def word(self) -> None:
         """Say which leg it is and what stands in its way, the points, and what to do."""
+        self.title, self.again_hint, self.new_hint = texts.DESCENT_TITLE, texts.DESCENT_AGAIN, texts.DESCENT_NEW
         leg = leg_of(self._seed, self.start)
         kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg.kinds)
         self.line = texts.DESCENT_LEG.format(number=self.start.number, kinds=kinds)
@@ -118,8 +120,8 @@ class Descent(Challenge):
         """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
         number = self.start.number
         if number <= len(self._before):
-            return Ghost(ReplayedFlight(self._before[number - 1]), texts.GHOST_BEFORE)
-        return Ghost(Flight(seed, network, leg=self.start), texts.MISSION_RIVAL) if network else None
+            return Ghost(ReplayedFlight(self._before[number - 1]), lambda: texts.GHOST_BEFORE)
+        return Ghost(Flight(seed, network, leg=self.start), partial(who, network)) if network else None
 
     def settle(self, flight: Flight, credit: Credit) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank."""
@@ -134,13 +136,14 @@ class Descent(Challenge):
             return
         spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
         self.streak = self.streak + 1 if own else 0
+        self._relief = credit.who
         self._points = score * min(self.streak, _MOST)
         self.total += self._points
         self.legs = self.start.number
         self._next = self.start.after(float(env.fuel[0]), score, bare=spot.bare)
         self._gained = max(0.0, self._next.tank - max(0.0, self.start.tank - float(env.fuel[0])))
         self.ahead = leg_of(self._seed, self._next).ground
-        self._name()
+        self.word()
 
     def again(self) -> bool:
         """The next leg follows after every landing."""
@@ -156,10 +159,10 @@ class Descent(Challenge):
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
         values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
         figures = tuple((label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True))
-        told = texts.DESCENT_NEW_BEST if best else texts.NOT_COUNTED[self.bar] if self.bar else card.advice
+        told = texts.DESCENT_NEW_BEST if best else credit.barred if self.bar else card.advice
         if float(flight.env.fuel[0]) >= flight.env.conditions.tank:
             told = texts.DESCENT_EMPTY
-        return replace(card, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs), advice=told)
+        return replace(card, figures=figures, score="", advice=told)
 
     # The picture
 
@@ -182,7 +185,8 @@ class Descent(Challenge):
         (x, y), half = craft, _TOLD / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
         rows = Cursor(x - half, y - _CLEAR, _TOLD, canvas.scale, canvas)
-        words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
+        relieved = sentence(texts.DESCENT_RELIEVED, self._relief)
+        words = texts.DESCENT_LANDED.format(count=self._points) if self._points else relieved
         rows.in_style(TEXT, HUMAN if self._points else NET).text(words, "centre")
         rows.gap(LEADING * TEXT)
         fuel = texts.DESCENT_NO_FUEL if self._next.bare else texts.DESCENT_FUEL.format(seconds=self._gained)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import Final
@@ -10,14 +9,12 @@ from typing import Final
 import numpy as np
 
 from ai.environment import Doubles
-from game.core.clock import STEP, TimeScale
+from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import OutcomeCard
-from game.scenes.play.card import PLACES, ShownCard
-from game.scenes.play.ghost import Ghost
-from game.ui.hints import Hint
+from game.scenes.play.card import PLACES
 from game.world.camera import CameraTarget, ClearArea, View
 from game.world.paths import draw_faint
 
@@ -75,15 +72,6 @@ class FlightEnding:
         if self._pace.slow and self._since > _CRASH_SEEN:
             self._pace.hurry()
             self._since = _CARD_AFTER
-
-    def shown_card(self, hints: list[Hint], ghost: Ghost | None, *, advise: bool) -> ShownCard | None:
-        """Return the card as it is seen now, with keys at its foot; None while there is none."""
-        if self.card is None or self.shown == 0:
-            return None
-        rival = ghost.row(self._flight.env) if ghost else None
-        # Seconds that a medal has been lit; with reduced motion, always.
-        lit = math.inf if self.calm else (self._since - _CARD_AFTER - _CARD_RISE) * STEP
-        return ShownCard(self.card, hints, self.shown, advise, rival, lit)
 
 
 class FlownPath:

@@ -17,7 +17,6 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
-from game.flight import networks
 from game.flight.credit import Credit, eased
 from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight, StickHolder
@@ -39,11 +38,10 @@ from game.scenes.play.words import why_not_saved
 from game.world.camera import ClearArea, View
 from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
 from game.world.landscape.ground import begin_hills
-from game.world.path_preview import PathPreview, draw_futures
+from game.world.paths import PathPreview, draw_futures
 from game.world.scenery import Scenery
 
 if TYPE_CHECKING:
-    from game.scenes.play.ghost import Ghost
     from game.ui.context import Context
 
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
@@ -76,6 +74,7 @@ class FlownFlight:
         futures: the six futures, once somebody has asked; None before.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
+        best: the score to beat in free flights, and the player's best from this start before; 0 for none.
         age: steps of 1/60 s since it was first shown, whether or not it flies.
 
     """
@@ -87,6 +86,7 @@ class FlownFlight:
         self.begun = self._was_over = False  # was: before its latest step
         self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
         self.record: Record | None = None
+        self.best = (0, 0)
         self._policy = None if challenge.alone else network.policy
         if challenge.eases:
             challenge.easing = eased(self._settings)
@@ -123,11 +123,6 @@ class FlownFlight:
     def helps(self) -> bool:
         """Whether a network may help in this flight."""
         return self.flight.shares and not self.credit.alone
-
-    @property
-    def rival(self) -> Ghost | None:
-        """The ghost that the card compares the flight with."""
-        return self.ghost if self.challenge.compares else None
 
     @property
     def stuck(self) -> bool:
@@ -249,16 +244,25 @@ class FlownFlight:
 
     # The end
 
-    def make_card(self, best: int, best_here: int) -> OutcomeCard:
-        """Return the outcome card; `best` is the score to beat in free flights, `best_here` from this start."""
+    def reword(self) -> None:
+        """Say anew what is kept of words, in another language."""
+        fresh = flight_readouts(self.flight.env)
+        for name, readout in self._readouts.items():
+            self._readouts[name] = replace(readout, label=fresh[name].label, what=fresh[name].what)
+        self.interventions.forget()
+        self.copilot_panel.forget()
+        self.copilot_panel.follow(self.flight, self.futures)
+
+    def make_card(self) -> OutcomeCard:
+        """Return the outcome card."""
         flight, credit, ending = self.flight, self.credit, self.ending
         ending.whole = self.scenery.shot_of(self.path.places)
         unranked = rung_of(flight) is not None or self.challenge.name
         card = outcome_card(flight.env, flight.share)
         card = replace(
-            card, score=credit.score(0 if unranked else best), reason=credit.reason(card.reason),
-            assists=credit.assists, place=self.path.clear_place(ending.whole.view(1.0)),
-            compared=self._compared(best_here),
+            card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason),
+            assists=credit.assists, who=credit.who, place=self.path.clear_place(ending.whole.view(1.0)),
+            compared=self._compared(self.best[1]),
         )  # fmt: skip
         if credit.helped:
             chance = None if card.good else self._last_chance
@@ -277,7 +281,8 @@ class FlownFlight:
             while not shadow.over:
                 shadow.step(0)
             score = landing_score(shadow.env)
-            rows.append((texts.CARD_NETWORK, texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING))
+            words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
+            rows.append((texts.CARD_NETWORK.format(who=self.credit.who), words))
         return tuple(rows)
 
     def write_down(self, records: Records) -> Entry | None:
@@ -374,7 +379,7 @@ class FlownFlight:
             draw_flight(world, self._readouts, self._shown(whole=whole))
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
-            self.copilot_panel.draw(canvas, flight.share if self.begun else None, networks.word(self.network.name))
+            self.copilot_panel.draw(canvas, flight.share if self.begun else None, self.network.name)
 
     @property
     def _coasting(self) -> tuple[float, bool] | None:

@@ -18,6 +18,7 @@ from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.handicap import HANDS, OWN
+from game.flight.logbook import ladder_rung
 from game.flight.networks import Network, Policy, titled
 from game.flight.outcomes import OutcomeCard
 from game.scenes.play.challenge import Challenge
@@ -36,11 +37,14 @@ class FreeFlight(Challenge):
         self._settings = settings
         self._misses = 0  # in a row, on this rung
         self._climbed = False
+        self._ladder = True  # whether the present flight began on it
+
+    def word(self) -> None:
+        self.opening = texts.LADDER_BEGIN if self._ladder else texts.BEGIN
 
     def recall(self, entries: Iterable[Entry]) -> None:
         """Give players of before a place on the ladder, by their landings."""
-        if self._settings.rung < 0:
-            self._settings.rung = min(TOP_RUNG, sum(entry.landed and not entry.course for entry in entries))
+        ladder_rung(self._settings, entries)
 
     def chosen(self) -> tuple[int, str, str]:
         """Return the number of pads, the handicap, and the kind of start."""
@@ -51,7 +55,8 @@ class FreeFlight(Challenge):
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         pads, self.hands, usual = self.chosen()
         flight = Flight(seed, network, spawn or usual, pads=pads, hands=self.hands, easing=self.easing)
-        self.opening = texts.BEGIN if rung_of(flight) is None else texts.LADDER_BEGIN
+        self._ladder = rung_of(flight) is not None
+        self.word()
         return flight
 
     def dial(self, settings: Settings) -> Settings:
@@ -67,15 +72,15 @@ class FreeFlight(Challenge):
             return texts.LADDER_TITLE.format(number=rung + 1, count=COUNT), flown
         return texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
-        """Move a rung up after a landing, and down after two misses in a row; return the card, which says so.
+    def settle(self, flight: Flight, credit: Credit) -> None:
+        """Move a rung up after a landing, and down after two misses in a row.
 
         Only flights that the player has brought to their end move it, with help or without.
         """
-        rung = rung_of(flight)
+        rung, settings = rung_of(flight), self._settings
         if rung is None:
-            return card
-        settings, mine, landed = self._settings, flight.hand is StickHolder.HUMAN, card.good
+            return
+        mine, landed = flight.hand is StickHolder.HUMAN, flight.outcome is Outcome.LANDED
         if mine and landed:
             settings.rung, self._misses = rung + 1, 0
         elif mine and not flight.intact:
@@ -83,10 +88,16 @@ class FreeFlight(Challenge):
             if self._misses >= MISSES:
                 settings.rung, self._misses = max(0, rung - 1), 0
         self._climbed = settings.rung != rung
+
+    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+        """Return the card, which says how the ladder was moved on."""
+        rung, now = rung_of(flight), self._settings.rung
+        if rung is None:
+            return card
         # What a landing counts for, helped or not, is said once, by the line of the ladder.
-        words = _words(rung, settings.rung) if mine or not landed else texts.LADDER_NOT_FLOWN
-        reason = texts.OUTCOMES[Outcome.LANDED.name][1] if landed else card.reason
-        return replace(card, reason=reason, rung=settings.rung, climb=words)
+        mine = flight.hand is StickHolder.HUMAN or not card.good
+        reason = texts.OUTCOMES[Outcome.LANDED.name][1] if card.good else card.reason
+        return replace(card, reason=reason, rung=now, climb=_words(rung, now) if mine else texts.LADDER_NOT_FLOWN)
 
     def remember(self, settings: Settings) -> bool:
         climbed, self._climbed = self._climbed, False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Final
 
@@ -23,6 +24,7 @@ from game.world.flame import NET_PLUME, plume
 from game.world.landscape.sheet import fitted
 from game.world.paths import Trails
 
+Named = str | Callable[[], str]  # a name, or what says it in the player's language
 _FIRE: Final = 0.5  # share of full thrust drawn, so that a ghost's flame is not mistaken for the player's
 _BODY, _RIM = 0.30, 0.9  # opacity of a ghost's body, and of its rim
 _FADED: Final = 0.55  # factor on both, once it has crashed
@@ -36,10 +38,15 @@ _HIDDEN: Final = 24.0  # points beyond the edge from which a ghost counts as bey
 class Ghost:
     """A rival's flight, replayed or flown by a network; call `step` once for every step of the player's."""
 
-    def __init__(self, flight: Flight, name: str) -> None:
-        self.flight, self.name = flight, name
+    def __init__(self, flight: Flight, name: Named) -> None:
+        self.flight, self._named = flight, name
         flight.hand_over()
         self._trail = Trails(1, keep=1)
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        return self._named if isinstance(self._named, str) else self._named()
 
     def step(self) -> None:
         """Advance the rival by 1/60 s."""

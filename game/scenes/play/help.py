@@ -90,12 +90,13 @@ class HelpWords:
             return texts.HELP[word]
         return texts.SOUND_SHARE.format(percent=round(100 * self._settings.assist))
 
-    def draw(self, canvas: Canvas, middle: float, y: float, means: Now) -> None:
-        """Draw the words, with a line under the one that is chosen; `means` says what that does now."""
-        now = word_of(self._settings)
-        for word, box in self.boxes(canvas, middle, y).items():
+    def draw(self, canvas: Canvas, middle: float, y: float, says: Now) -> None:
+        """Draw the words, with a line under the one that is chosen; `says` tells what that does now."""
+        now, boxes = word_of(self._settings), self.boxes(canvas, middle, y)
+        (first, *others) = boxes.values()
+        canvas.explain(first.unionall(others), means(self._settings), says)  # so that no tooltip covers a word
+        for word, box in boxes.items():
             chosen = word == now
             canvas.text(self._label(word), (box.centerx, y), size=SMALL, colour=INK if chosen else MUTE, align="centre")
             if chosen:
                 canvas.line((box.left + _APART / 2, y + 6), (box.right - _APART / 2, y + 6), NET, 2)
-                canvas.explain(box, texts.EXPLAIN_DIAL, means)

@@ -63,6 +63,10 @@ class Interventions:
         elif self._said:
             self._word, self._since = self._said, min(self._since, _FADES + 1)
 
+    def forget(self) -> None:
+        """Leave out what was said last, in another language."""
+        self._since = _LASTS
+
     @property
     def word(self) -> str:
         """What the co-pilot has just changed, in one sentence; empty once that is long enough ago to have been read."""

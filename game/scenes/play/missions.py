@@ -15,7 +15,7 @@ from game.drawing.glyphs import icon
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
 from game.flight import flight_file
 from game.flight.credit import TOGETHER
-from game.flight.flight_file import Entry, Record
+from game.flight.flight_file import Entry
 from game.flight.logbook import Records, rank
 from game.scenes.play.card import draw_lamps
 from game.scenes.play.challenge import FlownMission
@@ -41,7 +41,6 @@ class MissionsScene(PanelScene):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._index = 0
-        self._rival = ""  # the player's choice of ghost; empty for the default of each mission
         self._list: ListRow | None = None
         self.enter()
 
@@ -52,7 +51,7 @@ class MissionsScene(PanelScene):
         self._best = _best_by_course(entries)
         if self._records.problem:
             self.context.note(self._records.problem)
-        self._kept, self._together = self._records.kept(), _landed_together(entries)
+        self._together = _landed_together(entries)
         self.build()
 
     def actions(self) -> Table:
@@ -79,16 +78,8 @@ class MissionsScene(PanelScene):
         for medal in (3, 2, 1):
             right.add(partial(self._write_medal, medal))
         right.add(self._write_best)
-        right.gap(10)
-        self._rivals = right.choice(texts.MISSION_RIVAL_LABEL, [""], 0, self._choose_rival)
-        self._offer()
-        right.gap(6)
+        right.gap(12)
         right.button(texts.MISSION_FLY, self._fly, size=TITLE, colour=INK)
-
-    def _offer(self) -> None:
-        """Offer the ghosts of the chosen mission."""
-        self._rivals.options = [texts.MISSION_RIVALS[rival] for rival in self._offered]
-        self._rivals.index = self._offered.index(self._chosen_rival)
 
     def _write_best(self, cursor: Cursor) -> None:
         """Write the player's best result, if there is one."""
@@ -100,7 +91,6 @@ class MissionsScene(PanelScene):
 
     def _choose(self, index: int) -> None:
         self._index = index
-        self._offer()
 
     def _row(self, name: str) -> Row:
         best = self._best.get(name)
@@ -133,56 +123,28 @@ class MissionsScene(PanelScene):
 
     # Flights
 
-    def _mission(self, name: str, rival: str) -> FlownMission:
-        """Return a mission beside a ghost, with the way to the next one."""
-        record = self._record(name, rival)
-        later = _NAMES[_NAMES.index(name) + 1 :]
-        following = partial(self._go_to, later[0]) if later else None
-        ghost = texts.MISSION_GHOSTS[rival] if record else texts.MISSION_RIVAL
-        return FlownMission(MISSIONS[name], record, ghost, following)
+    def _mission(self, name: str) -> FlownMission:
+        """Choose a mission, so that the way back leads to it, and return it with the way to the next one.
 
-    def _go_to(self, name: str) -> FlownMission:
-        """Choose a mission, so that the way back leads to it, and return it beside its usual ghost."""
-        self._index = _NAMES.index(name)
-        return self._mission(name, _usual_rival(name))
+        Its ghost is the network or, where that does not land, a recorded landing.
+        """
+        self._index, record = _NAMES.index(name), None
+        if not MISSIONS[name].network_lands:
+            try:
+                record = flight_file.read(self.context.assets_dir / _FLIGHTS / f"{name}.json")
+            except ValueError as error:
+                self.context.note(str(error))
+        later = _NAMES[_NAMES.index(name) + 1 :]
+        following = partial(self._mission, later[0]) if later else None
+        return FlownMission(MISSIONS[name], record, lambda: texts.MISSION_GHOST, following)
 
     def _fly(self) -> Transition:
-        return push("play", 0, challenge=self._mission(self.chosen, self._chosen_rival))
-
-    @property
-    def _offered(self) -> list[str]:
-        """Names of the ghosts available in the chosen mission."""
-        best = self._best.get(self.chosen)
-        return ["network", "recorded", *(["own"] if best and best.file in self._kept else [])]
-
-    @property
-    def _chosen_rival(self) -> str:
-        """The player's choice of ghost if available; else the usual one."""
-        return self._rival if self._rival in self._offered else _usual_rival(self.chosen)
-
-    def _choose_rival(self, index: int) -> None:
-        self._rival = self._offered[index]
-
-    def _record(self, name: str, rival: str) -> Record | None:
-        """Read the recorded flight to race, None for the network; tell the player of one that can't be read."""
-        try:
-            if rival == "own":
-                return self._records.read(self._best[name].file)
-            if rival == "recorded":
-                return flight_file.read(self.context.assets_dir / _FLIGHTS / f"{name}.json")
-        except ValueError as error:
-            self.context.note(str(error))
-        return None
+        return push("play", 0, challenge=self._mission(self.chosen))
 
 
 def _landed_together(entries: list[Entry]) -> set[str]:
     """Return the missions that player and network have landed together, under the current rules."""
     return {entry.course for entry in entries if entry.landed and entry.human > 0 and entry.bar in TOGETHER}
-
-
-def _usual_rival(name: str) -> str:
-    """Return the ghost of a mission that nobody has chosen: the network where it lands, or a recorded landing."""
-    return "network" if MISSIONS[name].network_lands else "recorded"
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -40,19 +39,6 @@ _AWAY_STEPS: Final = 10
 _SKIP_ALL: Final = 60  # steps that the key for what comes next is held to leave out the whole tutorial
 _RELEASES: Final = (pygame.KEYUP, pygame.CONTROLLERBUTTONUP, pygame.WINDOWFOCUSLOST)
 _INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
-
-
-class _Bare(Scene):
-    """A flight without words, for a picture behind other scenes."""
-
-    flows = True
-
-    def __init__(self, flight: PlayScene) -> None:
-        super().__init__(flight.context)
-        self._flown = flight.flown
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        self._flown.draw(canvas, 1.0, Head(), whole=False, low=math.inf)
 
 
 class PlayScene(Scene):
@@ -105,6 +91,12 @@ class PlayScene(Scene):
         other = self.challenge.eases and eased(self._settings) != self.flight.recording.easing
         if not (self.flown.begun or self.flight.over) and (other or self.challenge.chosen() != self._begun_with):
             self._begin(self.flight.recording.seed)
+
+    def reword(self) -> None:
+        self.challenge.word()
+        self.flown.reword()
+        if self.ending.card:
+            self.ending.card = self._sitting.card(self.flown.make_card())
 
     def exit(self) -> None:
         self._stick.release()
@@ -233,19 +225,18 @@ class PlayScene(Scene):
 
     @property
     def leaves(self) -> bool:
-        """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
-        challenge = self.challenge
-        return not (challenge.free or challenge.stake) and (not self.flown.begun or self.flight.over)
+        """Whether Escape goes straight back: from the card of a challenge, where nothing is lost."""
+        return self.ending.card is not None and not (self.challenge.free or self.challenge.stake)
 
     def pause(self) -> Transition:
         self._away = 0
         return push("flight_pause", self, retry=self.retry, more=self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        name = networks.word(self.network.name)
+        network, pilot = networks.pause_labels(self.network.name)
         words: list[tuple[str, OnPress]] = [
-            (texts.PAUSE_NETWORK.format(name=name), lambda: push("runs", choose=self.choose_network)),
-            (texts.PILOTS_OPEN, lambda: push("pilots", self._choose_own)),
+            (network, lambda: push("runs", choose=self.choose_network)),
+            (pilot, lambda: push("pilots", self._choose_own)),
         ]
         if self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
@@ -274,8 +265,12 @@ class PlayScene(Scene):
 
     @property
     def _card(self) -> ShownCard | None:
-        hints = hints_of(self._card_actions(), self._controls) if self.ending.shown else []
-        return self.ending.shown_card(hints, self.flown.rival, advise=self._settings.show_hints)
+        ending, ghost = self.ending, self.flown.ghost
+        if ending.card is None or ending.shown == 0:
+            return None
+        rival = ghost.row(self.flight.env) if ghost and self.challenge.compares else None
+        hints = hints_of(self._card_actions(), self._controls)
+        return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints, rival)
 
     @property
     def _head(self) -> Head:
@@ -291,11 +286,6 @@ class PlayScene(Scene):
             card.draw(canvas)
         if not self._stick.mouse_flies:  # a mouse that flies asks for nothing
             self.explained.draw(canvas)
-
-    @property
-    def bare(self) -> Scene:
-        """This flight as a scene without words, for a picture behind other ones."""
-        return _Bare(self)
 
     # The flight
 
@@ -389,8 +379,9 @@ class PlayScene(Scene):
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            card = self.flown.make_card(self._best, self._sitting.best_here(self.flight))
-            ending.card = self._sitting.add(self.flown, card)
+            self.flown.best = self._best, self._sitting.best_here(self.flight)
+            self._sitting.add(self.flown)
+            ending.card = self._sitting.card(self.flown.make_card())
             if self._sitting.first:
                 self._sound.play("choose")
             self._remember()

@@ -40,20 +40,23 @@ class Sitting:
         """Return the player's best score from the start of a flight, 0 for none."""
         return self._best_here.get(_start(flight), 0)
 
-    def add(self, flown: FlownFlight, card: OutcomeCard) -> OutcomeCard:
-        """Take note of a finished flight; return its card, with what is to be said after those before."""
-        counts = flown.credit.counts and card.good and flown.challenge.kept
+    def add(self, flown: FlownFlight) -> None:
+        """Take note of a finished flight."""
+        landed = flown.flight.outcome is Outcome.LANDED
+        counts = flown.credit.counts and landed and flown.challenge.kept
         self.first = counts and not self._landed_before
         if counts:
             score, here = landing_score(flown.flight.env), _start(flown.flight)
             self._best_here[here] = max(score, self.best_here(flown.flight))
             self._landed_before = True
-        if self.first:
-            card = replace(card, title=texts.FIRST_LANDING, reason=texts.FIRST_LANDING_LINE)
-        landed = flown.flight.outcome is Outcome.LANDED
         self._crashes = 0 if landed else self._crashes + (not flown.flight.intact)
         there = flown.flight.copilot is not None and not flown.credit.alone
         self.offers = self._crashes >= CRASHES and there and flown.helped.assist == 0
+
+    def card(self, card: OutcomeCard) -> OutcomeCard:
+        """Return the flight's card, with what is to be said after those before."""
+        if self.first:
+            card = replace(card, title=texts.FIRST_LANDING, reason=texts.FIRST_LANDING_LINE)
         return replace(card, advice=texts.HELP_OFFER) if self.offers else card
 
 

@@ -19,7 +19,7 @@ from game.core import texts
 from game.core.settings import Settings
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
-from game.flight.networks import Policy, QPolicy
+from game.flight.networks import Policy, QPolicy, sentence, who
 from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
@@ -109,7 +109,6 @@ class Tutorial(Challenge):
     kept = False
 
     def __init__(self) -> None:
-        self.title, self.next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
         self._lessons = list(LESSONS)
         self.flown = False
         self._begin_lesson(0)
@@ -120,11 +119,16 @@ class Tutorial(Challenge):
         return self._lessons[self._number]
 
     def _begin_lesson(self, number: int) -> None:
-        self._number, self._why, self._over = number, "", False
+        self._number, self._over = number, False
         self._flown_for = self._done_for = self.praise = self._begun = 0
-        self._name()
+        self.word()
 
-    def _name(self) -> None:
+    def word(self) -> None:
+        self.title, self.next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
+        self._why = ""
+        self._count()
+
+    def _count(self) -> None:
         self.line = texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
         self.guides = self.lesson.guarded
 
@@ -136,7 +140,7 @@ class Tutorial(Challenge):
         """Begin a flight at the current lesson, or one before it; without a network, leave out what needs one."""
         self._leave_out(network)
         self._number -= self.lesson.back
-        self._name()
+        self._count()
         self._begun += 1
         self._done_for = self.praise = self._flown_for = 0
         self._over = False
@@ -211,7 +215,8 @@ class Tutorial(Challenge):
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
         by_network = flight.hand is StickHolder.NETWORK
-        return texts.TUTORIAL_NETWORK_LANDED if by_network else texts.TUTORIAL_LANDED_EARLY
+        landed = sentence(texts.TUTORIAL_NETWORK_LANDED, who(flight.network))
+        return landed if by_network else texts.TUTORIAL_LANDED_EARLY
 
     def skip(self) -> None:
         """Skip the lesson, and those that start with it."""
@@ -264,6 +269,7 @@ class Tutorial(Challenge):
             main=controls.word(Held.MAIN),
             turn=turn,
             other=right if turned(env) > 0 else left,
+            who=who(flight.network),
             inward=right if env.position[0, 0] < 0 else left,
             hand_over=controls.word(Command.HANDOVER),
             more=texts.TUTORIAL_WHEEL if controls.mouse_in_use else controls.word(Command.FASTER),

@@ -14,6 +14,7 @@ from ai.lander.sensing import near_edges
 from game.core import texts
 from game.explain.landings import Landing, Landings
 from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
+from game.flight import networks
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import TIPPED
@@ -48,7 +49,7 @@ def sentence(flight: Flight, credit: Credit, changed: str, controls: Controls) -
     if words := next(dangers(flight.env), ""):
         return words, True
     if not by_hand:
-        return texts.NETWORK_FLIES_BACK.format(key=controls.word(Command.HANDOVER)), False
+        return networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER)), False
     return credit.header, False
 
 
@@ -132,10 +133,8 @@ def dial_words(assist: float, copilot: CoPilot | None, problem: str = "") -> str
     from ai.copilot.guardian import decisions_of
     from engine import DT
 
-    if copilot is None or copilot.mode is not Mode.GUARDIAN:
+    if copilot is None or assist == 0 or copilot.mode is not Mode.GUARDIAN:
         return ""
-    if assist == 0:
-        return texts.DIAL_NEVER
     if problem:
         by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
         return f"{texts.GUARDIAN_BY_VALUES.format(problem=problem)} {by_points}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import pygame
 
@@ -17,13 +17,12 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, PANEL, SMALL, TITLE
 from game.explain.explained import Explained
-from game.explain.run_status import rate_colour
+from game.explain.readouts import rate_colour
 from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout, layout
-from game.scenes.train.status import TrainingStatus
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form import Part
@@ -42,13 +41,21 @@ _MARGIN: Final = 32.0  # of the panel
 _TITLE: Final = (24.0, 16.0)  # corner of the title over the display
 _WIDEST: Final = 372.0
 _FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
-_COVER: Final = 0.82  # of the panel behind the title: landers are many, and bright
 _LEAST: Final = 80.0  # points of height for the title above the charts
 _FOOT: Final = 0.8  # share of the panel that its foot takes at most
 MORE: Final = "more"  # what a player can open: the words for all else, every chart, every knob, the network
 CHARTS: Final = "charts"
 KNOBS: Final = "knobs"
 INSIDE: Final = "inside"
+
+
+class TrainingStatus(NamedTuple):
+    """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
+
+    title: str
+    line: str
+    figure: str
+    words: str
 
 
 class TrainingScene(FormScene, ABC):
@@ -80,7 +87,6 @@ class TrainingScene(FormScene, ABC):
         self.form.in_order = True
         self.run, self._settings = run, context.settings
         self._was_running = self._alive = False
-        self._question: Transition | None = None  # asked after the next update
         self._laid: Hashable = None
         self._layout: Layout | None = None
         self.explained = Explained()
@@ -208,7 +214,7 @@ class TrainingScene(FormScene, ABC):
     def _describe_foot(self, column: Column) -> None:
         """Add what went wrong, or a hint, or help; the run that can go on; and the button that starts."""
         if self.run.problem:
-            column.add(self._write_problem)
+            column.text(lambda: self.run.problem, size=SMALL, colour=HUMAN)
         elif not self._describe_hint(column):
             self.knobs.describe_foot(column)
         if words := self._unfinished:
@@ -216,11 +222,6 @@ class TrainingScene(FormScene, ABC):
         column.gap()
         self.start_button = column.button(self._start_label, self._toggle, size=TITLE, colour=INK)
         self.start_button.pad = 2.0
-
-    def _write_problem(self, cursor: Cursor) -> None:
-        small = cursor.in_style(SMALL, cursor.canvas.palette.warn if cursor.canvas else MUTE)
-        small.text(self.run.problem)
-        cursor.y = small.y
 
     def lay_out(self) -> None:
         """Lay everything out for the window as it is."""
@@ -310,8 +311,7 @@ class TrainingScene(FormScene, ABC):
         if self._rows_key != self._laid and not any(widget.held or widget.typing for widget in self.form.widgets):
             self._lay()
         self.lay_out()
-        question, self._question = self._question, None
-        return outcome or question
+        return outcome
 
     # The run
 
@@ -390,7 +390,7 @@ class TrainingScene(FormScene, ABC):
         cursor = Cursor(left + 16, top + 10, width - 32, canvas.scale)
         self._write_title(cursor, status)
         box = (left, top, width, cursor.y - top + 8)
-        canvas.panel(box, _COVER)
+        canvas.panel(box, 1.0)
         self._write_title(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), status)
         canvas.explain(box, texts.EXPLAIN_TRAINED)
         HintRow(self.hints[:1], (left + width - 16, top + 30), from_right=True).draw(canvas)
@@ -405,7 +405,7 @@ class TrainingScene(FormScene, ABC):
             wide = cursor.in_style(size, weight="light").measured(status.figure, tabular=True)
             if canvas := cursor.canvas:
                 place = cursor.left - 2, cursor.y + 0.92 * size
-                colour = rate_colour(canvas.palette, float(status.figure))
+                colour = rate_colour(canvas, float(status.figure))
                 canvas.text(status.figure, place, size=size, weight="light", tabular=True, colour=colour)
                 canvas.text(status.words, (cursor.left + wide + 10, place[1]), size=SMALL, colour=MUTE,
                             room=cursor.width - wide - 10)  # fmt: skip

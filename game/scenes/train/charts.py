@@ -21,9 +21,8 @@ from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.paint import mix
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, LABEL, MUTE, NIGHT0
+from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.beside import EarlierRun
 from game.training.knob_descriptions import figure, label, told
 from game.ui.chart import Chart, Series, Tick
@@ -40,7 +39,6 @@ _TURNS: Final = 12  # frames in a round: in every second one, one chart reads th
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0)  # that the axis spans at least
-_DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
 _DASH: Final = (5.0, 4.0)  # of a second curve
 _WIDE: Final = 300.0  # points of a chart with room for one line in a line
 _SIZE: Final = LABEL - 1.0  # of captions
@@ -143,14 +141,12 @@ class Beside:
         runs: their curves.
         name: of the run itself, beside them.
         paid_otherwise: whether their pay says nothing beside that of the run; then it is not shown.
-        emphasised: line style of the run that is seen before others.
 
     """
 
     runs: Sequence[EarlierRun] = ()
     name: str = ""
     paid_otherwise: bool = False
-    emphasised: int | None = None
 
 
 class TrainingCharts(Charts):
@@ -213,23 +209,21 @@ class TrainingCharts(Charts):
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
-        told = (len(history), len(history.validations), shown, beside.emphasised, self.axis, self.zoom.shown,
+        told = (len(history), len(history.validations), shown, self.axis, self.zoom.shown,
                 len(history.setting_changes))  # fmt: skip
         if self._told[number] == told:
             return False
         self._told[number] = told
         name = list(self._kinds)[number]
         compared = runs[:1] if name == SCORE and beside.paid_otherwise else runs
-        self._set(name, self.charts[number], compared, beside.emphasised, say(name))
+        self._set(name, self.charts[number], compared, say(name))
         return True
 
-    def _set(self, name: str, chart: Chart, runs: Sequence[EarlierRun], emphasised: int | None, said: str) -> None:
+    def _set(self, name: str, chart: Chart, runs: Sequence[EarlierRun], said: str) -> None:
         kind, across = self._kinds[name], AXES[self.axis]
         series = []
         for each in runs:
             colour, dash = run_style(each.style)
-            if emphasised not in (None, each.style):
-                colour = mix(colour, NIGHT0, _DIMMED)
             series.append(Series(*kind.curve(each.run, across), each.name, colour, dash, kind.smooth))
         if kind.second and len(runs) == 1 and len(self._history):
             series.append(Series(*kind.second(self._history, across), kind.words()[0], HUMAN, _DASH))

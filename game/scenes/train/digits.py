@@ -18,13 +18,12 @@ from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.explain.lesson_door import ImageDoor
+from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
-from game.scenes.train.base import TrainingScene
+from game.scenes.train.base import TrainingScene, TrainingStatus
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout
-from game.scenes.train.status import TrainingStatus, digit_status
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
@@ -77,7 +76,7 @@ class DigitTrainingScene(TrainingScene):
     def _build(self) -> None:
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = TrainingCharts(DIGIT_CHARTS)
-        self.lessons = ImageDoor(self.run, self.context.note)
+        self.lessons = LessonDoor(self.run, self.context.note)
         self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, self.run.change, self._begin, KNOBS)
         self.film = FilterFilm(self.charts)
         self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
@@ -90,7 +89,21 @@ class DigitTrainingScene(TrainingScene):
 
     @property
     def _status(self) -> TrainingStatus:
-        return digit_status(self.run)
+        run = self.run
+        history, scores = run.history, run.history.validations
+        line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
+        if len(history):
+            line = texts.DIGIT_RUN_FIGURES.format(
+                epoch=history["epoch"][-1], epochs=run.config.epochs, seconds=history["seconds"][-1],
+                rate=history["images_per_second"][-1],
+            )  # fmt: skip
+        part, words = scores[-1].success if scores else None, texts.DIGIT_RUN_READ
+        if run.test is not None:
+            if run.kept_epoch is not None:
+                read = f"{100 * scores[-1].success:.2f} %" if scores else "–"
+                line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=run.kept_epoch, last=read)
+            part, words = run.test, texts.DIGIT_RUN_TESTED
+        return TrainingStatus(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)
 
     @property
     def _unfinished(self) -> str:
@@ -140,7 +153,7 @@ class DigitTrainingScene(TrainingScene):
         column.choice("", texts.DIGIT_RUN_VIEWS, self.view, self._change_view, SMALL)
         column.line()
         column.words([
-            (texts.LESSON_WHY, self.lessons.open),
+            (texts.LESSON_WHY, self.lessons.ask),
             (texts.DIGIT_RUN_DREAM, lambda: self._show_kept("dream")),
             (texts.DIGIT_RUN_QUIZ, lambda: self._show_kept("quiz")),
             (texts.TRAIN_SAVE, self._save),

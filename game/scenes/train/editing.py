@@ -1,4 +1,4 @@
-"""Editing of the large network by hand: units are silenced, links are cut or given another weight, and back.
+"""Editing of the large network by hand: units are silenced, links are cut, and back.
 
 The swarm flies with it at once, and learning is held still until the player lets it go on. What is drawn is what the
 run tells back, never what was asked for.
@@ -7,7 +7,6 @@ run tells back, never what was asked for.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import Final
 
 import numpy as np
 import pygame
@@ -22,11 +21,6 @@ from game.explain.network_view import NetworkView
 from game.scenes.train.picking import Link, Part, Unit, draw_marks, name_of, part_at
 from game.training.run import TrainingRun
 from game.ui.panel import Column
-from game.ui.rows import SliderRow
-
-_LEAST: Final = 1.0  # weight that a slider reaches at least
-_REACH: Final = 2.0  # times the largest weight of the layer that it reaches
-_STEPS: Final = 50  # of the slider, from 0 to the largest weight
 
 
 class NetworkEditing:
@@ -41,23 +35,18 @@ class NetworkEditing:
     def __init__(self, view: NetworkView, run: TrainingRun) -> None:
         self._view, self._run = view, run
         self.past = False
-        self._slider: SliderRow | None = None
         self.clear()
 
     def clear(self) -> None:
         """Reset for another run."""
         self.picked: Part | None = None
         self._network: NeuralNetwork | None = None
-        self._wanted: float | None = None  # weight to be sent with the next update
-        self._amends = False  # whether the next weight belongs to the step before
 
     def look(self, network: NeuralNetwork) -> None:
         """Take the network that is shown."""
-        self._network, weight = network, self._weight
-        if isinstance(self.picked, Link) and weight is None:
+        self._network = network
+        if isinstance(self.picked, Link) and self._weight is None:
             self.picked = None
-        if self._slider is not None and self._wanted is None and weight is not None:
-            self._slider.value = weight
 
     @property
     def enabled(self) -> bool:
@@ -92,27 +81,16 @@ class NetworkEditing:
         """Pick what the mouse or the virtual pointer is pressed on."""
         pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
         if pressed and self.enabled and self._view.box.collidepoint(event.pos):
-            self.picked, self._amends = part_at(self._view, event.pos), False
+            self.picked = part_at(self._view, event.pos)
 
-    def _want(self, weight: float) -> None:
-        self._wanted = weight
-
-    def _cut(self) -> None:
-        self._amends, self._wanted = False, 0.0
-
-    def _silence(self) -> None:
-        if isinstance(self.picked, Unit):
+    def _take_away(self) -> None:
+        """Silence the picked unit, or cut the picked link."""
+        if self.picked is not None:
             self._run.edit("edit", Edit(*self.picked))
 
     def update(self) -> None:
-        """Send what was changed in this frame, and keep what was edited in sight."""
+        """Keep what was edited in sight."""
         picked, edits = self.picked, self._run.edits
-        if self._wanted is not None and isinstance(picked, Link) and self.enabled:
-            self._run.edit("edit", Edit(*picked, self._wanted), self._amends)
-            self._amends = self._wanted != 0.0  # a cut is a step of its own
-            if self._slider is not None:
-                self._slider.value = self._wanted
-        self._wanted = None
         changed = [*([picked] if picked else []), *(Link(*weight) for weight in edits.weights)]
         units = {unit for part in changed for unit in (part.ends if isinstance(part, Link) else (part,))}
         self._view.pinned = frozenset({(*unit,) for unit in units} | {(*unit,) for unit in edits.silenced})
@@ -128,11 +106,10 @@ class NetworkEditing:
     def describe(self, column: Column, *, opened: bool) -> None:
         """Add what is picked, and what can be done to it; where the network is not seen, what was edited alone."""
         edits, words = self._run.edits, list[tuple[str, Callable[[], None]]]()
-        self._slider = None
         changed = self.enabled and (edits.steps > 0 or edits.holds or edits.way_back)
         if opened and self._run.alive:
             column.text(lambda: self._sentence, size=SMALL, colour=HUMAN)
-            words += self._describe_picked(column) if self.enabled and not self._silent else []
+            words += self._answers if self.enabled and not self._silent else []
         elif changed:
             column.text(texts.EDIT_HOLDS if edits.holds else texts.EDIT_LEARNT_ON, size=SMALL, colour=HUMAN)
         if changed and edits.steps:
@@ -144,19 +121,13 @@ class NetworkEditing:
         if words:
             column.words(words)
 
-    def _describe_picked(self, column: Column) -> list[tuple[str, Callable[[], None]]]:
-        """Add the slider of the picked link; return what can be done to the unit or link."""
+    @property
+    def _answers(self) -> list[tuple[str, Callable[[], None]]]:
+        """What can be done to the picked unit or link."""
         if isinstance(self.picked, Unit):
-            return [(texts.EDIT_SILENCE, self._silence)] if self.picked.stage < len(self._view.columns) - 1 else []
-        weight = self._weight
-        if self.picked is None or self._network is None or weight is None or self._fixed:
-            return []
-        size = np.abs(links(self._network)[self.picked.layer].weights)
-        most = max(_LEAST, _REACH * float(np.nan_to_num(size, posinf=0.0).max()))
-        self._slider = column.slider(
-            texts.EDIT_WEIGHT, weight, (-most, most), self._want, step=most / _STEPS, figure=_figure
-        )
-        return [(texts.EDIT_CUT, self._cut)]
+            inner = self.picked.stage < len(self._view.columns) - 1
+            return [(texts.EDIT_SILENCE, self._take_away)] if inner else []
+        return [(texts.EDIT_CUT, self._take_away)] if self._weight and not self._fixed else []
 
     @property
     def _sentence(self) -> str:
@@ -176,7 +147,3 @@ class NetworkEditing:
         """Draw the marks over the network."""
         if self._network is not None:
             draw_marks(canvas, self._view, self._run.edits, self.picked)
-
-
-def _figure(weight: float) -> str:
-    return f"{weight:+.2f}".replace("-", "−")

@@ -16,15 +16,15 @@ from ai.training.messages import NetworkState
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import SMALL, TITLE
+from game.explain.figures import points
 from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
-from game.explain.reward_bar import RewardBar
+from game.explain.tables import Line, table
 from game.scenes.train.editing import NetworkEditing
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 
 SHOWN: Final[tuple[Show, ...]] = get_args(Show)
-_PAID: Final = 84.0  # height of what it is paid for, at the foot of the display
 _MARGIN: Final = 32.0
 
 
@@ -33,18 +33,17 @@ class Inside:
 
     Attributes:
         opened: whether they are seen; the network is followed in any case.
-        view, reward_bar: what it shows; `network` is the one in the view, None without a run,
-            and `shown` the message that it came with.
+        view: shows `network`, None without a run; `shown` is the message that it came with.
+        paid: points that each part of the reward has paid per flight, (len(PARTS),).
         health: diagnosis of the network's units and numbers.
         editing: what a player does to the network by hand.
 
     """
 
     def __init__(self, run: TrainingRun) -> None:
-        self.opened = False
+        self._opened = False
         self._run = run
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self.reward_bar = RewardBar((0, 0, 400, 80))
         self.editing = NetworkEditing(self.view, run)
         self.clear()
 
@@ -52,8 +51,18 @@ class Inside:
         """Reset for another run."""
         self.network: NeuralNetwork | None = None
         self.shown: NetworkState | None = None
+        self.paid = np.zeros(len(PARTS))
         self.health = NetworkHealth()
         self.editing.clear()
+
+    @property
+    def opened(self) -> bool:
+        return self._opened
+
+    @opened.setter
+    def opened(self, opened: bool) -> None:
+        self._opened = opened
+        self._look()
 
     @property
     def busy(self) -> bool:
@@ -62,10 +71,7 @@ class Inside:
 
     def place(self, display: pygame.FRect) -> None:
         """Move to another box."""
-        paid = pygame.FRect(display.left + _MARGIN, display.bottom - _PAID, display.width - 2 * _MARGIN, _PAID - 14)
-        self.reward_bar.box = paid
-        top = display.top + 20
-        self.view.place((paid.left, top, paid.width, max(paid.top - top - 16, 60)))
+        self.view.place((display.left + _MARGIN, display.top + 20, display.width - 2 * _MARGIN, display.height - 36))
 
     def examine(self, state: NetworkState) -> None:
         """Show the network that the run reports, and see how healthy it is."""
@@ -76,7 +82,7 @@ class Inside:
     def show(self, state: NetworkState | None, row: int = -1) -> None:
         """Show a network, perhaps of an earlier moment, and what was paid at that row of the history."""
         if len(self._run.history):
-            self.reward_bar.set(PARTS, self._run.history.parts[row])
+            self.paid = np.nan_to_num(self._run.history.parts[row])
         if state is None or state is self.shown:
             return
         config, network = self._run.config, self.network
@@ -87,23 +93,27 @@ class Inside:
         self.network, self.shown = network, state
         network.values = state.values
         network.gradients[:] = state.gradients
-        self.view.output_scale = config.reward_scale
-        self.view.set(network, state.observation)
-        self.editing.look(network)
+        self._look()
+
+    def _look(self) -> None:
+        """Let the view follow, while it is seen: to choose what it shows takes a millisecond."""
+        if self._opened and self.network is not None and self.shown is not None:
+            self.view.output_scale = self._run.config.reward_scale
+            self.view.set(self.network, self.shown.observation)
+            self.editing.look(self.network)
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self.view.hover(event.pos if self.opened else None)
-            self.reward_bar.hover(event.pos if self.opened else None)
         if self.opened:
             self.editing.follow(event)
 
-    def update(self, at_once: bool) -> None:
+    def update(self) -> None:
         """Advance by 1/60 s."""
         self.editing.update()
         if self.opened:
-            self.view.update(at_once=at_once)
+            self.view.update()
 
     def describe(self, column: Column) -> None:
         """Add what the lines show, and what can be done to the network."""
@@ -111,12 +121,24 @@ class Inside:
         column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._choose, SMALL)
         column.aside(lambda: texts.NETWORK_VIEW_LINES[self.view.show])
         self.editing.describe(column, opened=True)
+        column.gap()
+        column.caption(texts.REWARD_BAR_LABEL)
+        if len(self._run.history):
+            column.add(table((), self._paid_lines))
+        else:
+            column.aside(texts.REWARD_BAR_EMPTY)
+
+    def _paid_lines(self) -> list[Line]:
+        """Return what each part has paid a flight, and the sum."""
+        words = [texts.REWARD_PARTS[name] for name in PARTS]
+        parts = zip(words, self.paid.tolist(), strict=True)
+        lines = [Line((word, points(paid, 1)), what) for (word, what), paid in parts]
+        return [*lines, Line((texts.REWARD_SUM, points(float(self.paid.sum()), 1)), lit=True)]
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the network, the marks on it, and what it is paid for."""
+        """Draw the network and the marks on it."""
         self.view.draw(canvas)
         self.editing.draw(canvas)
-        self.reward_bar.draw(canvas)
 
     def _choose(self, index: int) -> None:
         self.view.show = SHOWN[index]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
-from typing import Literal, NamedTuple
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from typing import Any, Final, Literal, NamedTuple
 
+from ai.files import read_json
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import (
     MEASURED,
@@ -21,14 +22,17 @@ from ai.training.experiments import (
     judged_at,
     verdict,
 )
+from ai.training.messages import DIVERGED
 from game.core import texts
+from game.core.assets import ASSETS_DIR
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
-from game.scenes.train.cards import measured
 from game.scenes.train.knobs import KnobsPanel
 from game.training.knob_descriptions import KnobDescription, figure, label
 from game.training.run import TrainingRun
 from game.training.run_settings import LANDER
 from game.ui.panel import Column
+
+FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
 
 
 class Chosen(NamedTuple):
@@ -45,7 +49,7 @@ class Laboratory:
     Attributes:
         page: which one is shown in the panel; "" for none, so that the knobs are seen.
         chosen: what flies or flew last, or is about to.
-        came: what has come of it; None while it is too early to say.
+        came: what has come of it; None while it is too early to say. It is said once, and stays.
         said: the same in words, by subject.
 
     Args:
@@ -53,6 +57,7 @@ class Laboratory:
         knobs: the settings that an experiment changes.
         start: starts the experiment.
         leave: ends the split view, and keeps the experiment if that is true.
+        landed: returns what both land now, in percent, as it stands on the screen.
 
     """
 
@@ -62,12 +67,13 @@ class Laboratory:
         knobs: KnobsPanel,
         start: Callable[[Experiment], None],
         leave: Callable[[bool], None],
+        landed: Callable[[], Sequence[str]],
     ) -> None:
-        self._run, self._knobs, self._start, self._leave = run, knobs, start, leave
+        self._run, self._knobs, self._start, self._leave, self._landed = run, knobs, start, leave, landed
         self.page: Literal["", "picks", "guess", "result"] = ""
         self.chosen: Chosen | None = None
         self.came: Verdict | None = None
-        self.said = dict.fromkeys(("differs", "problem", "came", "why", "measured"), "")
+        self.said = dict.fromkeys(("differs", "figures", "came", "why", "measured"), "")
 
     def open(self) -> None:
         """Show what has come of the experiment that flies, or what there is to try."""
@@ -78,20 +84,24 @@ class Laboratory:
         self.page = ""
 
     def follow(self) -> None:
-        """Judge both runs by their curves; call it when there is news."""
+        """Judge both runs by their curves, once there is enough of them; call it when there is news."""
         run, twin, chosen = self._run, self._run.twin, self.chosen
-        if twin is None or chosen is None:
+        if twin is None or chosen is None or self.came:
             return
-        self.came, early = None, texts.LAB_TOO_EARLY
+        early = figures = ""
         if len(run.history) and len(twin.history):
             healthy, other = Flown(run.history, run.config), Flown(twin.history, twin.config)
-            self.came = verdict(healthy, other, failed=bool(twin.problem))
-            if math.isfinite(judged := judged_at(healthy, other)):
-                early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged))
+            # Another end than a network that diverged says nothing of the experiment.
+            self.came = verdict(healthy, other, failed=DIVERGED in twin.problem)
+            judged = judged_at(healthy, other)
+            early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged)) if math.isfinite(judged) else ""
+            figures = texts.LAB_FIGURES_THEN.format(
+                count=int(twin.history["decisions"][-1]), other=100 * other.landed, healthy=100 * healthy.landed
+            )
         self.said = {
             "differs": listed_differences(run.config, twin.config),
-            "problem": twin.problem,
-            "came": came_words(self.came, chosen.guess) or early,
+            "figures": figures if self.came else "",
+            "came": came_words(self.came, chosen.guess) or ("" if twin.problem else early or texts.LAB_TOO_EARLY),
             "why": why(self.came, chosen.experiment.sabotage),
             "measured": measured(chosen.experiment.sabotage)
             if self.came and chosen.experiment.sabotage and run.config == PRESETS[MEASURED]
@@ -125,14 +135,16 @@ class Laboratory:
     def _try(self, experiment: Experiment, description: KnobDescription) -> None:
         """Fly a knob's experiment beside the run."""
         name = texts.LAB_NAME.format(knob=description.label, change=experiment_word(experiment, description))
-        self.chosen = Chosen(experiment, name)
-        self._start(experiment)
+        self._begin(Chosen(experiment, name))
 
     def _fly(self, guess: Verdict | None) -> None:
         """Fly the sabotage that was chosen, with a guess or without one."""
         assert self.chosen is not None
-        self.chosen = self.chosen._replace(guess=guess)
-        self._start(self.chosen.experiment)
+        self._begin(self.chosen._replace(guess=guess))
+
+    def _begin(self, chosen: Chosen) -> None:
+        self.chosen, self.came = chosen, None
+        self._start(chosen.experiment)
 
     def _guess(self, column: Column) -> None:
         assert self.chosen is not None
@@ -163,8 +175,10 @@ class Laboratory:
             column.text(texts.LAB_GUESSES[self.chosen.guess], size=SMALL, colour=HUMAN)
             column.gap()
         column.caption(texts.LAB_CAME)
-        for subject, colour in (("problem", HUMAN), ("came", NET), ("why", INK), ("measured", MUTE)):
+        column.text(self._figures, size=SMALL, colour=INK)
+        for subject, colour in (("came", NET), ("why", INK), ("measured", MUTE)):
             column.text(partial(self._told, subject), size=SMALL, colour=colour)
+        column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
         column.words([
             (texts.LAB_KEEP_RUN, partial(self._leave, False)),
             (texts.LAB_KEEP_EXPERIMENT, partial(self._leave, True)),
@@ -173,6 +187,13 @@ class Laboratory:
 
     def _told(self, subject: str) -> str:
         return self.said[subject]
+
+    def _figures(self) -> str:
+        """What both land: at the verdict, or before that, now."""
+        landed = self._landed()
+        if self.came or len(landed) < 2 or not all(map(str.isdigit, landed)):
+            return self.said["figures"]
+        return texts.LAB_FIGURES.format(other=landed[1], healthy=landed[0])
 
 
 def came_words(came: Verdict | None, guess: Verdict | None) -> str:
@@ -209,3 +230,19 @@ def listed_differences(before: Config, after: Config) -> str:
         word = texts.KNOB_WEIGHTS[part][0] if part in texts.KNOB_WEIGHTS else label(head)
         found.append(texts.LAB_DIFFERS.format(knob=word, before=figure(old), after=figure(new)))
     return ", ".join(found)
+
+
+@cache
+def measurements() -> dict[str, Any]:
+    """Return decisions and seeds, and for each run its mean share that landed, and its interval's ends."""
+    found = read_json(FILE)
+    assert isinstance(found, dict)
+    return found
+
+
+def measured(name: str) -> str:
+    """Say what was measured of a sabotage, beside the preset that nothing was taken from."""
+    found = measurements()
+    other, healthy = ([100 * part for part in found["shares"][each]] for each in (name, MEASURED))
+    told = dict(zip(("other", "low", "high", "healthy", "least", "most"), (*other, *healthy), strict=True))
+    return texts.LAB_MEASURED.format(decisions=found["decisions"], seeds=found["seeds"], **told)

@@ -6,6 +6,7 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
+import pygame
 
 from ai.training.edits import NetworkEdits
 from game.core import texts
@@ -66,34 +67,31 @@ def name_of(view: NetworkView, part: Part) -> str:
 
 
 def draw_marks(canvas: Canvas, view: NetworkView, edits: NetworkEdits, picked: Part | None) -> None:
-    """Draw silenced units hollow, edited links in amber, cut ones dashed, and a ring around the picked unit."""
+    """Draw silenced units hollow, cut links dashed, and the picked unit or link in amber."""
     for weight in edits.weights:
-        _draw_link(canvas, view, Link(*weight), 1.0)
+        _draw_link(canvas, view, Link(*weight), cut=True)
     for place in edits.silenced:
         if centre := _centre(view, Unit(*place)):
             canvas.dot(centre, view.radius + 2, NIGHT0)
             canvas.marker("ring", centre, 2 * view.radius + 2, HUMAN)
     if isinstance(picked, Link):
-        _draw_link(canvas, view, picked, 2.0)
+        _draw_link(canvas, view, picked, cut=tuple(picked) in edits.weights)
     elif picked and (centre := _centre(view, picked)):
         canvas.marker("ring", centre, 2 * view.radius + 8, HUMAN)
 
 
-def _draw_link(canvas: Canvas, view: NetworkView, link: Link, width: float) -> None:
+def _draw_link(canvas: Canvas, view: NetworkView, link: Link, *, cut: bool) -> None:
     start, end = (_centre(view, unit) for unit in link.ends)
     if start is None or end is None:
         return
-    if view.weight(*link):
-        canvas.line(start, end, HUMAN, width)
+    if not cut:
+        canvas.line(start, end, HUMAN, 2.0)
         return
+    first = pygame.Vector2(start)
     count = max(1, round(math.dist(start, end) / _DASH / 2))
     for number in range(count):
-        here, there = (_between(start, end, part / count) for part in (number, number + 0.5))
-        canvas.line(here, there, HUMAN, width, 0.7)
-
-
-def _between(start: Point, end: Point, share: float) -> Point:
-    return start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
+        here, there = first.lerp(end, number / count), first.lerp(end, (number + 0.5) / count)
+        canvas.line((here.x, here.y), (there.x, there.y), HUMAN, 1.5, 0.7)
 
 
 def _place(view: NetworkView, unit: Unit) -> int | None:

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.pilots.child import PAY
+from ai.pilots.shelf import Shelf
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
+from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
@@ -20,10 +24,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
-from game.input.controls import Command
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
-from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene
+from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene, TrainingStatus
 from game.scenes.train.charts import BY_DECISIONS, SCORE, Beside, ChartCaptions, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
@@ -31,12 +34,10 @@ from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout
 from game.scenes.train.rewind import Rewind
 from game.scenes.train.split_view import SplitView
-from game.scenes.train.status import TrainingStatus, lander_status
 from game.training.beside import take_away
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.training.workers import LANDERS, PACES
-from game.ui.actions import Action, Table
 from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -73,11 +74,12 @@ class TrainScene(TrainingScene):
         self.swarm, self.past_swarm = LearningSwarm(), LearningSwarm()
         self.charts, self.captions = TrainingCharts(), ChartCaptions()
         self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, run.change, self._begin)
-        self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split)
+        self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
         self.split_view, self.inside, self.rewind = SplitView(run), Inside(run), Rewind(run)
-        self.lessons = LessonDoor(run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
+        self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
         self._pace, self._frame = len(PACES) - 1, 0
+        self._news = False  # of the network, on which there is no advice yet
         self._legend: list[RunRow] = []
 
     def _show_opened(self) -> None:
@@ -95,11 +97,19 @@ class TrainScene(TrainingScene):
 
     @property
     def _status(self) -> TrainingStatus:
-        status = lander_status(self.run, self.moment, self.rewind.row)
+        run, row, title, landed = self.run, self.rewind.row, texts.TRAIN_TITLE, texts.TRAIN_LANDED
+        if run.swarm_state is None or not run.measured:
+            return TrainingStatus(title, texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE, "", landed)
+        line = texts.TRAIN_FIGURES.format(
+            landers=len(run.swarm_state.outcome), seconds=run.history["seconds"][row],
+            count=int(run.swarm_state.decisions) if self.moment is None else self.moment,
+        )  # fmt: skip
+        share = run.history["success"][row]
+        figure = "" if np.isnan(share) else f"{100 * share:.0f}"
         painted = "".join(self.charts.landed[:1])
         if self.moment is None and painted.isdigit():  # one number for the title and its chart
-            status = status._replace(figure=painted)
-        return status
+            figure = painted
+        return TrainingStatus(title, line, figure, landed)
 
     @property
     def _unfinished(self) -> str:
@@ -131,7 +141,7 @@ class TrainScene(TrainingScene):
             ]
         else:
             self._laid_pointers = [
-                VirtualPointer(manager, nowhere, self.lessons.follow, hold=texts.LESSON_MARK),
+                VirtualPointer(manager, nowhere, self._choose_lander, hold=texts.LESSON_MARK),
                 VirtualPointer(manager, nowhere, charts.follow),
                 Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by),
             ]
@@ -149,7 +159,7 @@ class TrainScene(TrainingScene):
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
-            column.button(texts.LESSON_WHY, self.lessons.open)
+            column.button(texts.LESSON_WHY, self._ask_why)
             self.switch(column, INSIDE)
             return
         self.inside.editing.describe(column, opened=False)
@@ -169,7 +179,7 @@ class TrainScene(TrainingScene):
         column.gap(8)
         column.line()
         column.words([
-            (texts.LESSON_WHY, self.lessons.open),
+            (texts.LESSON_WHY, self._ask_why),
             (texts.TRAIN_DUEL, self._duel),
             (texts.TRAIN_COMPARE, self._compare),
             (texts.TRAIN_TEACH, self._teach),
@@ -193,9 +203,8 @@ class TrainScene(TrainingScene):
 
     @property
     def _beside(self) -> Beside:
-        emphasised = next((each.style for each in self._legend if each.focused), None)
         chosen = self.laboratory.chosen
-        return self.split_view.beside(chosen.name if chosen else texts.LAB_HEADING, emphasised)
+        return self.split_view.beside(chosen.name if chosen else texts.LAB_HEADING)
 
     def _describe_hint(self, column: Column) -> bool:
         if self._advice.shown:
@@ -203,12 +212,8 @@ class TrainScene(TrainingScene):
         return self._advice.shown
 
     def _set_pace(self, pace: int) -> None:
-        self._pace = min(max(pace, 0), len(PACES) - 1)
-        self.run.set_pace(self._pace)
-
-    def _turn_pace(self, direction: int) -> None:
-        self._set_pace(self._pace + direction)
-        self._laid = None  # the choice shows it
+        self._pace = pace
+        self.run.set_pace(pace)
 
     # Events and time
 
@@ -219,14 +224,8 @@ class TrainScene(TrainingScene):
         self.inside.follow(event)
         outcome = super().handle_event(event)
         if not self.inside.opened and not self.form.used:
-            self.lessons.follow(event)
+            self._choose_lander(event)
         return outcome
-
-    def actions(self) -> Table:
-        """Change the pace, and do all that every run has."""
-        *others, explain = super().actions()
-        pace = [Action(Command.SLOWER, lambda: self._turn_pace(-1)), Action(Command.FASTER, lambda: self._turn_pace(1))]
-        return [*others, *pace, explain]
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
@@ -238,13 +237,16 @@ class TrainScene(TrainingScene):
         else:
             self.knobs.show_in_force(run.in_force)
         self._go_to(self.moment)
+        if self._news and run.alive and not looked:  # in a frame of its own
+            self._news, looked = False, True
+            self._advice.follow(self.inside.health)
         looked |= self.charts.look(run.history, self._beside, self._caption)
         self.swarm.update(still)
         self.split_view.update(still, self.moment)
         self._frame += 1
         if self._frame % _JUDGED == 0:
             self.laboratory.follow()
-        self.inside.update(still)
+        self.inside.update()
         # Tasks that take a millisecond or two take turns, one per frame.
         self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         return self._finish_update() or self.lessons.update()
@@ -260,8 +262,7 @@ class TrainScene(TrainingScene):
             return False
         if self.moment is None:
             self.inside.examine(run.network_state)
-        if run.alive and len(run.history):
-            self._advice.follow(self.inside.health)
+        self._news = run.alive and len(run.history) > 0
         return True
 
     def _go_to(self, moment: int | None) -> None:
@@ -295,6 +296,11 @@ class TrainScene(TrainingScene):
 
     # The run
 
+    def _start(self, config: Config, seed: int, resume: Path | None = None) -> None:
+        with suppress(OSError):
+            self.run.pays = tuple(Shelf(self.context.user_dir, PAY).files().values())
+        super()._start(config, seed, resume)
+
     def _clear(self) -> None:
         for part in (self.split_view, self.swarm, self.rewind, self._advice, self.charts, self.captions, self.inside):
             part.clear()
@@ -309,6 +315,20 @@ class TrainScene(TrainingScene):
     def _suggestion(self) -> str:
         name = texts.TRAIN_TAUGHT_NAME if self.run.demonstrations else texts.TRAIN_NAME
         return name.format(preset=self.knobs.name)
+
+    def _choose_lander(self, event: pygame.event.Event) -> None:
+        """Choose the lander that is clicked, in points; a second click asks for its lesson."""
+        swarm, pressed = self.shown_swarm, event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        slot = swarm.slot_at(event.pos) if pressed else None
+        if slot is not None and slot == swarm.chosen:
+            self._ask_why()
+        elif slot is not None:
+            swarm.chosen = slot
+
+    def _ask_why(self) -> None:
+        """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
+        chosen = self.shown_swarm.chosen
+        self.lessons.ask(CAREFUL if chosen is None else chosen, self.moment)
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
@@ -422,4 +442,5 @@ class TrainScene(TrainingScene):
             if self.moment is not None and self.rewind.swarm_state is None:
                 canvas.text(texts.REWIND_NO_LANDERS, box.center, size=SMALL, colour=MUTE, align="centre")
         canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
-        self.draw_title(canvas)
+        if not split or box.height > 2 * _HEAD:  # or else it would lie on both swarms, which say the same
+            self.draw_title(canvas)

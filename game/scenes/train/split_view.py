@@ -46,14 +46,14 @@ class SplitView:
     def _runs(self) -> Sequence[TrainingRun]:
         return (self._run, self._run.twin) if self._run.twin else ()
 
-    def beside(self, experiment: str, emphasised: int | None) -> Beside:
+    def beside(self, experiment: str) -> Beside:
         """Return what is shown beside the run: its experiment, by that name, or else earlier runs."""
         twin, run = self._run.twin, self._run
         if twin is None:
-            return Beside(run.earlier, emphasised=emphasised)
+            return Beside(run.earlier)
         self._names = (texts.SPLIT_HEALTHY, experiment)
         otherwise = twin.config.reward_weights != run.config.reward_weights
-        return Beside([EarlierRun(experiment, twin.history, _STYLE)], texts.SPLIT_HEALTHY, otherwise, emphasised)
+        return Beside([EarlierRun(experiment, twin.history, _STYLE)], texts.SPLIT_HEALTHY, otherwise)
 
     def clear(self) -> None:
         """Empty both halves, for other runs."""
@@ -61,14 +61,10 @@ class SplitView:
         for swarm in self.swarms:
             swarm.clear()
 
-    def moment_of(self, run: TrainingRun, moment: int) -> int:
-        """Return a moment of the healthy run, in decisions, as that of either: each lander has taken as many."""
-        return moment * int(run.config.num_envs) // int(self._run.config.num_envs)
-
     def update(self, still: bool, moment: int | None = None) -> None:
         """Take the latest snapshots, or those of a moment, in decisions, and advance by 1/60 s."""
         for run, swarm in zip(self._runs, self.swarms, strict=False):
-            state = run.swarm_state if moment is None else run.swarms.nearest(self.moment_of(run, moment))
+            state = run.swarm_state if moment is None else run.swarms.nearest(moment)
             if state is not None and state is not swarm.swarm_state:
                 if moment != self._moment:
                     swarm.clear()
@@ -91,7 +87,7 @@ class SplitView:
             canvas.surface.blit(picture.surface, canvas.rect(left, box.top, *swarm.box.size))
             share = landed[number] if number < len(landed) else ""
             if self._moment is not None:
-                row = run.history.row_at(self.moment_of(run, self._moment))
+                row = run.history.row_at(self._moment)
                 share = f"{100 * Flown(run.history, run.config).landed_at(row):.0f}"
             self._write(canvas, left, number, run, share)
         canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)

@@ -1,4 +1,4 @@
-"""Study scene: the trials of a study by their results, the chosen one's learning curves, and knobs against result."""
+"""Study scene: the trials of a study by their results, and the chosen one's learning curves."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from ai.sweep.study import FinishedTrial, Study, StudyError
 from ai.training.config import LANDER
 from game.core import texts
 from game.core.scene import Transition, push
-from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import LABEL, LINE, MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import NET, SMALL, TITLE
 from game.flight import networks
 from game.flight.study_runs import studies
 from game.scenes.train.networks import write_headings
@@ -32,7 +31,8 @@ if TYPE_CHECKING:
 _LEAST: Final = 300.0  # points of a column
 _CELLS: Final = (152.0, 0.0)  # from the right end of the list: where result and worst seed end
 _PITCH, _AROUND = 30.0, 190.0  # points of a row of the list, and of all around the list
-_CHART, _DOTS = 128.0, 132.0  # points of height
+_CHART: Final = 200.0  # points of height
+_NAMED: Final = 4  # knobs whose share of the difference is said
 
 
 class StudyScene(PanelScene):
@@ -53,7 +53,6 @@ class StudyScene(PanelScene):
             self._folders.insert(0, folder)
         self._index = self._folders.index(folder) if folder is not None else 0
         self._chart = Chart((0, 0, 300, _CHART), texts.STUDY_CURVE, read_x="{:,.0f}".format)
-        self._dots = PaintCache()
         self._read()
         self.build()
 
@@ -62,7 +61,6 @@ class StudyScene(PanelScene):
         self._study: Study | None = None
         self.items: list[FinishedTrial] = []
         self.chosen: FinishedTrial | None = None
-        self._knobs, self._knob = list[str](), 0
         self._line = texts.STUDY_UNREADABLE if self._folders else texts.STUDY_NONE
         try:
             study = Study.load(self._folders[self._index]) if self._folders else None
@@ -71,7 +69,6 @@ class StudyScene(PanelScene):
         if study is None:
             return
         self._study, self.items = study, study.ranked()
-        self._knobs = sorted(study.plan.space, key=lambda name: -study.importance.get(name, 0.0))
         better = texts.STUDY_LESS if study.metric.sign == 1 else texts.STUDY_MORE
         self._line = texts.STUDY_LINE.format(
             finished=len(study.trials), trials=study.plan.trials, metric=_metric(study), better=better
@@ -115,20 +112,15 @@ class StudyScene(PanelScene):
         settings = " · ".join(f"{label(name)} {knob_value(value)}" for name, value in trial.params.items())
         column.aside(brief(settings, 190))
         column.picture(_CHART, self._draw_chart)
-        if self._knobs:
-            column.choice(texts.STUDY_KNOB, [*map(label, self._knobs)], self._knob, self._choose_knob, SMALL)
-            column.aside(self._said_of_knob)
-            column.picture(_DOTS, self._draw_dots)
+        if study.importance:
+            most = sorted(study.importance.items(), key=lambda item: -item[1])[:_NAMED]
+            shares = ", ".join(f"{label(name)} {round(100 * share)} %" for name, share in most)
+            column.aside(texts.STUDY_SHARES.format(shares=shares))
         if self._run and self._flies:
             column.words([(texts.STUDY_WATCH, self._watch), (texts.STUDY_RACE, self._race)])
         else:
             why = texts.STUDY_UNKEPT if self._flies else texts.STUDY_ELSEWHERE
             column.aside(texts.STUDY_STOPPED if trial.stopped else why)
-
-    def _said_of_knob(self) -> str:
-        assert self._study is not None
-        share = self._study.importance.get(self._knobs[self._knob])
-        return texts.STUDY_DOTS if share is None else texts.STUDY_SHARE.format(share=round(100 * share))
 
     # What can be done
 
@@ -143,9 +135,6 @@ class StudyScene(PanelScene):
         if hasattr(self, "_beside"):
             self._beside.clear()
             self._describe_chosen(self._beside)
-
-    def _choose_knob(self, index: int) -> None:
-        self._knob = index
 
     @property
     def _flies(self) -> bool:
@@ -202,35 +191,6 @@ class StudyScene(PanelScene):
     def _draw_chart(self, canvas: Canvas, box: pygame.FRect) -> None:
         self._chart.move(box)
         self._chart.draw(canvas)
-
-    def _draw_dots(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the trials by their values of a knob, and a ring around the chosen one; kept until one is another."""
-        study, trial, knob = self._study, self.chosen, self._knobs[self._knob]
-        assert study is not None
-        assert trial is not None
-        shows = (study.folder, knob, trial.number, box.size)
-        self._dots.draw(canvas, box, shows, lambda sheet: _paint_dots(sheet, box.size, study, knob, trial))
-
-
-def _paint_dots(canvas: Canvas, size: tuple[float, float], study: Study, knob: str, chosen: FinishedTrial) -> None:
-    """Paint a dot for each trial, across by one knob and up by the result."""
-    dimension, trials = study.plan.space[knob], study.ranked()
-    plot = pygame.FRect(0, 8, size[0], size[1] - 30)
-    canvas.line(plot.bottomleft, plot.bottomright, LINE)
-    values = [trial.value or 0.0 for trial in trials]
-    low, high = min(values), max(values)
-    inner = plot.inflate(-16, -16)
-    for trial, value in zip(trials, values, strict=True):
-        share = (value - low) / (high - low) if high > low else 0.5
-        up = share if study.metric.sign == -1 else 1 - share
-        spot = (inner.left + dimension.place(trial.params[knob]) * inner.width, inner.bottom - up * inner.height)
-        canvas.dot(spot, 2.5, MUTE)
-        if trial.number == chosen.number:
-            canvas.dot(spot, 3.5, NET)
-            canvas.outline((spot[0] - 8, spot[1] - 8, 16, 16), 8, NET)
-    left, right = map(knob_value, dimension.ends)
-    canvas.text(left, (0, size[1] - 6), size=LABEL, colour=MUTE)
-    canvas.text(right, (plot.right, size[1] - 6), size=LABEL, colour=MUTE, align="right")
 
 
 def knob_value(value: object) -> str:

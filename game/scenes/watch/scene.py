@@ -20,7 +20,7 @@ from game.drawing.canvas import Canvas, moved
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.explain.run_status import draw_landings
+from game.explain.readouts import draw_landings
 from game.flight import networks, own
 from game.flight.swarm import Swarm
 from game.input.controls import Command

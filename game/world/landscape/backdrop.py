@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from copy import copy, deepcopy
+from copy import deepcopy
 from functools import lru_cache, partial
 from typing import Final, NamedTuple
 
@@ -16,9 +16,8 @@ from game.drawing.paint import PIECE
 from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import NIGHT0, VIEW_SIZE
 from game.world.camera import MOST_LINES, POINTS_PER_METRE, Camera, View
-from game.world.landscape.earth import paint_earth
 from game.world.landscape.sheet import WorldPicture
-from game.world.landscape.sky import NearStars, page_of, paint_sky
+from game.world.landscape.sky import NearStars, page_of, paint_earth, paint_sky
 from game.world.landscape.terrain import (
     HORIZON_HEIGHT,
     MARGIN,
@@ -62,13 +61,6 @@ class Backdrop:
     def whole(self) -> bool:
         """Whether all of it that was painted so far is painted in full."""
         return self._far.whole and all(plain.whole for plain in self._plains.values())
-
-    def under(self, look: Theme) -> Backdrop:
-        """Return the same land under another theme: another world, or other light."""
-        other = copy(self)
-        other._look, other._plains = look, {}
-        other._far = InPieces(partial(_paint_far, self.size, self._chances, self._calm, look))
-        return other
 
     def draw(
         self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0, earth: tuple[float, float] = EARTH

@@ -1,21 +1,25 @@
-"""Ground of a flight: hills and knolls in front of the plain, and the pads."""
+"""Ground of a flight: hills and knolls in front of the plain, the pads, and the edges of the area."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import Final
 
 import numpy as np
+import pygame
 
 from ai.environment import Doubles
+from ai.lander.environment import LanderEnv
 from ai.lander.ground import Ground, Pad, half_plane
+from ai.lander.sensing import NEAR, near_edges
 from game.drawing.canvas import Canvas
-from game.drawing.paint import PIECE, Picture, Sheet, bell, slopes
+from game.drawing.paint import PIECE, Picture, Sheet, bell, light, slopes
 from game.drawing.paint_cache import InPieces, Steps, idle
-from game.drawing.tokens import INK
-from game.world.camera import LAND_REACH, WORLD_WIDTH, View
+from game.drawing.tokens import INK, Colour
+from game.world.camera import GROUND_LINE, LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
 from game.world.landscape.sheet import WorldPicture
 from game.world.landscape.sky import SUN
@@ -33,6 +37,11 @@ _BAND: Final = 64  # rows that are painted together
 _RIM: Final = 0.05  # metres beside rock that are painted in its colour, though clear
 _STAKE: Final = 5.0  # points
 _LIP: Final = 0.3  # metres that a knoll is lower than its pad
+_EDGE_DEPTH: Final = 4.0  # metres that the glow reaches into the area
+_BEYOND: Final = 60.0  # metres to both sides, beyond any view: of the edge above
+_EDGE_LEVELS: Final = 12  # steps of its strength, so that few pictures are ever made
+_EDGE_LIGHT: Final = 0.8
+_EDGE_PICTURE: Final = (48, 64)  # pixels, stretched
 
 
 def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
@@ -83,7 +92,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> Steps[tuple[WorldPic
     yield len(across)
     cells = max(2.0, (top - ground.base + _FOOT) / 1.1), 2 * _REACH / 1.6
     folds = yield from slopes(shape, rng, cells, 4, 0.5, max(1, round(pixels_per_metre * _FOLD)))
-    sheet, light = Sheet(shape, rng), _Light(across, crest, pixels_per_metre)
+    sheet, lit = Sheet(shape, rng), _Light(across, crest, pixels_per_metre)
     foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
     for rows in (slice(start, min(start + _BAND, shape[0])) for start in range(0, shape[0], _BAND)):
         height = heights[rows]
@@ -96,7 +105,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> Steps[tuple[WorldPic
             fade = np.clip(1 + faded / np.maximum(foot[columns], 0.02), 0, 1)
             cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (under > ground.base + 0.01) * fade * np.sqrt(fade)
             cover = np.maximum(cover, np.clip(hung * pixels_per_metre + 0.5, 0, 1))
-            sheet.put(rows.start, columns.start, light.on(columns, rise, below, lean), cover)
+            sheet.put(rows.start, columns.start, lit.on(columns, rise, below, lean), cover)
             yield below.size
         yield 1
     yield PIECE
@@ -191,3 +200,39 @@ def _softened(row: Picture, width: float) -> Picture:
     blur = np.hanning(2 * round(width) + 1)
     soft: Picture = np.convolve(np.pad(row, len(blur) // 2, "edge"), blur / blur.sum(), "valid").astype(np.float32)
     return soft
+
+
+def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> None:
+    """Draw a glow and a hairline along every edge of the area near the craft, brighter the nearer it is."""
+    for edge in near_edges(env):
+        level = math.ceil(_EDGE_LEVELS * (1 - edge.away / NEAR))
+        if not level:
+            continue
+        ceiling = env.limits.ceiling
+        inward = {"left": 1.0, "right": -1.0, "above": -1.0}[edge.side] * _EDGE_DEPTH
+        if edge.side == "above":
+            corners = (-_BEYOND, edge.place), (_BEYOND, edge.place + inward)
+        else:
+            corners = (edge.place, ceiling), (edge.place + inward, GROUND_LINE)
+        (x0, y0), (x1, y1) = (view.pixel(*corner) for corner in corners)
+        box = pygame.Rect(round(min(x0, x1)), round(y0), max(1, round(abs(x1 - x0))), max(1, round(y1 - y0)))
+        wide, high = canvas.surface.get_size()
+        seen = box.clip((0, box.top, wide, box.height) if edge.side == "above" else (box.left, 0, box.width, high))
+        if seen.width and seen.height:
+            glow = pygame.transform.scale(_edge_glow(edge.side, level, colour), seen.size)
+            canvas.surface.blit(glow, seen, special_flags=pygame.BLEND_RGB_ADD)
+        end = (_BEYOND, ceiling) if edge.side == "above" else (edge.place, GROUND_LINE)
+        (ax, ay), (bx, by) = (view.point(*place) for place in (corners[0], end))
+        canvas.line((ax, ay), (bx, by), colour, alpha=0.5 * level / _EDGE_LEVELS)
+
+
+@lru_cache(maxsize=3 * _EDGE_LEVELS)
+def _edge_glow(side: str, level: int, colour: Colour) -> pygame.Surface:
+    """Return light that fades inward from one side; `level` is its strength in twelfths."""
+    across, down = _EDGE_PICTURE
+    fade = np.linspace(1.0, 0.0, down if side == "above" else across, dtype=np.float32) ** 2.2
+    shine = np.repeat(fade[:, None], across, axis=1) if side == "above" else np.repeat(fade[None, :], down, axis=0)
+    if side == "right":
+        shine = shine[:, ::-1]
+    strength = _EDGE_LIGHT * level / _EDGE_LEVELS
+    return light(np.ascontiguousarray(shine * strength)[..., None] * np.array(colour, np.float32))

@@ -21,6 +21,7 @@ _BACK: Final = 0.20  # metres by which the deck's far edge appears above its nea
 _LAMP: Final = 0.20  # height of a lamp above the deck
 _MARGIN: Final = 0.6
 _SOFT: Final = 0.25  # resolution at which light without edges is painted
+_DASH_X, _DASH_Y = (-0.14, 0.14, 0.14, -0.14), (-0.185, -0.185, -0.245, -0.245)  # metres, of a dash below the edge
 _BLUR: Final = 0.03  # relative error that its width may have
 
 
@@ -68,7 +69,8 @@ def _paint(
     lip = 0.13
     quad(mix(NIGHT0, NIGHT1, 0.5), (-inset, -lip), (inset, -lip), (inset + 0.25, -height), (-inset - 0.25, -height))
     quad((30, 36, 58), (-inset, -lip), (inset, -lip), (inset + 0.06, -0.30), (-inset - 0.06, -0.30))
-    _dashes(quad, inset, colour)
+    for middle in (np.linspace(-0.9, 0.9, 10) * inset).tolist():
+        quad(mix(NIGHT1, colour, 0.55), *((middle + x, y) for y, x in zip(_DASH_Y, _DASH_X, strict=True)))
     for foot in np.linspace(-inset + 0.1, inset - 0.1, 6).tolist():
         quad((40, 46, 68), (foot - 0.05, -0.30), (foot + 0.05, -0.30), (foot + 0.05, -height), (foot - 0.05, -height))
     quad((54, 58, 80), (-edge, 0.0), (edge, 0.0), (edge - 0.34, _BACK), (-edge + 0.34, _BACK))
@@ -82,20 +84,6 @@ def _paint(
         quad((150, 158, 178), (x - 0.035, 0.0), (x + 0.035, 0.0), (x + 0.035, _LAMP), (x - 0.035, _LAMP))
     picture = pygame.transform.smoothscale(sheet, (2 * half, above + below))
     return WorldPicture(picture, pixels_per_metre), (-half / pixels_per_metre, above / pixels_per_metre)
-
-
-def _dashes(quad: object, inset: float, colour: Colour) -> None:
-    assert callable(quad)
-    count = 10
-    for number in range(count):
-        middle = (number + 0.5) / count * 2 * inset - inset
-        quad(
-            mix(NIGHT1, colour, 0.55),
-            (middle - 0.14, -0.185),
-            (middle + 0.14, -0.185),
-            (middle + 0.14, -0.245),
-            (middle - 0.14, -0.245),
-        )
 
 
 @lru_cache(maxsize=8)

@@ -30,10 +30,10 @@ def agent():
     return DeepQAgent.load(MODEL)
 
 
-def plan(*pushes):
+def plan(*pushes, begin=0):
     """A plan that begins here with these pushes."""
     actions, shares = np.array([push.action for push in pushes]), np.array([push[1:] for push in pushes])
-    return Plan(0, 1.62, 0, actions, shares, np.zeros((len(pushes) + 1, 6)))
+    return Plan(begin, 1.62, 0, actions, shares, np.zeros((len(pushes) + 1, 6)))
 
 
 def lands(*pushes, lasts=True):
@@ -70,6 +70,33 @@ def test_the_least_is_corrected_that_lands():
         assert choice(asked, known, held) == (push, source), what
     asked = choice(stick, lands(MAIN_LEFT), plan(LEFT), whole=True)
     assert asked == (MAIN_LEFT, "PILOT_MAIN")
+
+
+def held_keys(saved_each, most=400, length=30, sooner=None):
+    """Hold left, which lands as late whenever it is pushed but in one decision, and is saved in each so many of them.
+
+    Returns the steps flown, and in how many decisions in a row the key was felt at most.
+    """
+    guardian, steps, felt, longest = Guardian(), 0, 0, 0
+    guardian.plan = plan(*(MAIN,) * length)
+    while steps < 4 * most and guardian.plan.push(here := HERE._replace(steps=steps)):
+        later = plan(LEFT, *(MAIN,) * (10 if steps // 4 == sooner else length), begin=steps)
+        known = {LEFT: Future(None if steps // 4 % saved_each == 0 else later)}
+        push = guardian.choose(here, LEFT, COAST, known).push
+        felt = felt + 1 if push == LEFT else 0
+        longest, steps = max(longest, felt), steps + 4
+    return steps, longest
+
+
+def test_held_keys_put_the_landing_off_for_three_seconds_and_no_longer():
+    first = 4 * 30  # steps flown when the plan lands that was held at the first correction
+    for saved_each in (2, 3, 6):
+        assert first + 160 < held_keys(saved_each)[0] <= first + 180, saved_each
+    soonest = 4 * 16  # pushed in its fifth decision, it lands after eleven
+    assert soonest + 160 < held_keys(3, sooner=5)[0] <= soonest + 180
+    steps, felt = held_keys(30)
+    assert steps == 4 * 400, "who is seldom corrected flies on"
+    assert felt == 29
 
 
 def test_it_asks_for_no_more_futures_than_it_needs():

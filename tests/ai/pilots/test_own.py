@@ -2,6 +2,7 @@
 
 import os
 import time
+from itertools import count
 from pathlib import Path
 from typing import ClassVar
 
@@ -16,6 +17,7 @@ from ai.pilots.shelf import TEMPLATES
 from ai.training.config import Config
 from ai.training.history import Point
 from ai.training.lander_session import live
+from ai.training.messages import RunStarted
 
 OBSERVATION = np.zeros((1, 9), np.float32)
 HELD = np.array([5])
@@ -281,3 +283,26 @@ def test_a_run_learns_by_a_file_from_nothing(tmp_path: Path):
     points = [message for _ in range(400) for message in next(turns) if isinstance(message, Point)]
     turns.close()
     assert points[-1].mean_return > 200  # three points for each step in the air
+
+
+def test_a_run_that_goes_on_is_paid_as_before_or_says_that_it_is_not(tmp_path: Path) -> None:
+    path, folder = tmp_path / "pay.py", tmp_path / "run"
+    path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
+    config = Config(num_envs=8, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1)
+
+    def go_on(decisions: int, **options: object) -> tuple[str, float]:
+        """What is said at the beginning, and the mean pay of a flight after some decisions."""
+        turns = live(config, 1, keep=folder, clock=count().__next__, **options)
+        (said,) = (each.lost for each in next(turns) if isinstance(each, RunStarted))
+        while True:
+            points = [each for each in next(turns) if isinstance(each, Point)]
+            if points and points[-1].decisions >= decisions:
+                turns.close()
+                return said, points[-1].mean_return
+
+    assert go_on(8_000, pay=path)[1] > 200, "each of some hundred steps pays 3"
+    said, paid = go_on(16_000, resume=folder, pays=(tmp_path / "another.py", path))
+    assert (said, paid > 200) == ("", True)
+    said, paid = go_on(32_000, resume=folder)
+    assert "pay.py" in said
+    assert paid < 0

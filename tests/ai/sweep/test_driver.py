@@ -151,6 +151,21 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
     assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
 
 
+def test_where_every_trial_fails_the_study_ends_after_a_hundred_and_can_go_on(tmp_path, monkeypatch):
+    from ai.sweep import driver
+
+    study, workers = Study.create(tmp_path / "study", tiny_plan(trials=5000)), 30
+    runner, running = driver.Driver(study, workers, lambda line: None, lambda: None), []
+    monkeypatch.setattr(runner, "_start", lambda job: running.append(job) or runner.jobs.update({len(running): job}))
+    monkeypatch.setattr("ray.wait", lambda jobs, timeout: (jobs, []))
+    monkeypatch.setattr(runner, "_take", lambda number: runner._lose(runner.jobs.pop(number), "no such environment"))
+    runner.run([])
+    assert driver.MOST_LOST <= len(runner.lost) <= driver.MOST_LOST + workers
+    again = Study.load(study.folder)
+    assert sorted(again.under_way) == sorted(runner.lost)
+    assert driver.Driver(again, 1, print, print).search.next() == again.under_way[0]
+
+
 def test_without_an_address_nothing_listens_but_on_this_machine_and_no_token_is_written(tmp_path):
     folder, home = tmp_path / "study", tmp_path / "home"
     home.mkdir(mode=0o500)

@@ -43,7 +43,7 @@ def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
                         case "success", "falls":
                             assert figures["before"] > 100 * now["success"] + 5, at
                         case "success", "high":
-                            assert now["success"] >= 0.9, at
+                            assert now["success"] >= 0.97, at
                         case "success", "crashes" | "hovers" | "leaves" | "none":
                             assert now["success"] == 0, at
                         case "epsilon", "all":
@@ -124,7 +124,10 @@ def test_no_caption_speaks_against_a_hint(name: str):
 
 
 def test_a_hint_on_the_screen_silences_praise_of_its_charts():
-    run = recorded("modern healthy")
+    run = next(
+        each for each in growing("modern healthy")
+        if each.history["decisions"][-1] > 100_000 and each.history["success"][-8:].min() >= 0.97
+    )  # fmt: skip
     praised = captions(RecentCurves(run.history, run.config))["success"].name
     beside = captions(RecentCurves(run.history, run.config), "plateau")["success"].name
     assert (praised, beside) == ("high", "steady")

@@ -62,6 +62,8 @@ def test_before_its_twin_lands_it_is_too_early_to_say():
     flown = Flown(young.history, young.config), Flown(run.history, run.config)
     assert verdict(*flown) is None
     assert verdict(*flown, failed=True) == "runs_away"
+    slow = recorded("modern healthy, another seed", until=20_000)
+    assert verdict(Flown(HEALTHY.history, HEALTHY.config), Flown(slow.history, slow.config)) is None
 
 
 def test_each_is_a_configuration_that_learns(subtests: pytest.Subtests):

@@ -94,8 +94,8 @@ def hint_after(run: Watched, decisions: int = 60_000) -> str:
     return ""
 
 
-def said(run: Watched, chart: str) -> str:
-    found = caption(chart, RecentCurves(run.history, run.config))
+def said(run: Watched, chart: str, shown: str = "") -> str:
+    found = caption(chart, RecentCurves(run.history, run.config), shown=shown)
     return found.name if found else ""
 
 
@@ -117,7 +117,8 @@ def test_an_edited_network_goes_back_to_before_the_edit(run: Watched):
     for unit in range(NEAR.hidden[-1]):
         run.send(("edit", Edit(1, unit)))
     assert hint_after(run) == "edited"
-    assert said(run, "loss") == "held", "it has learnt, and does not now"
+    for shown in ("", "steady", "falls", "rises"):
+        assert said(run, "loss", shown) == "held", "it has learnt, and does not now: the number is an old one"
     assert run.adviser.shown
     assert run.adviser.shown.back_to is not None
     run.send(("restore", run.adviser.shown.back_to))

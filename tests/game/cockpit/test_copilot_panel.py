@@ -67,33 +67,6 @@ def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
     assert set(texts.VALUES_DAMAGED) <= set(drawn.words)
 
 
-def test_an_override_that_is_over_is_said_to_be_past(monkeypatch: pytest.MonkeyPatch):
-    flight = Flight(3, Prefers())
-    flight.help(0.5, Mode.TOLERANCE)
-    copilot_panel = CopilotPanel(flight.env.ground)
-    canvas, drawn = Canvas(pygame.Surface((1280, 720))), Drawn(monkeypatch)
-
-    def title(held: int) -> str:
-        flight.step(held)
-        copilot_panel.follow(flight)
-        drawn.clear()
-        copilot_panel.draw(canvas, 0.5)
-        return next(word for word in drawn.words for why in texts.COPILOT_PANEL_WHY.values() if word.startswith(why))
-
-    copilot, yours = texts.COPILOT_PANEL_WHY["COPILOT"], texts.COPILOT_PANEL_WHY["PILOT"]
-    assert title(2) == copilot
-    assert title(1) == texts.COPILOT_PANEL_BEFORE.format(title=copilot)
-    assert flight.recording.actions[-1] == 1
-    assert [title(1) for _ in range(60)][-1] == yours
-
-
-class Prefers(Wavers):
-    """One that finds the main engine best, left good enough, and the rest of no use."""
-
-    def q_values(self, observation: np.ndarray) -> np.ndarray:
-        return np.tile(np.array([0, 0.06, 0, 0.1, 0, 0], np.float32), (len(observation), 1))
-
-
 def test_rows_that_are_not_known_anew_stay_for_half_a_second():
     unknown, recent = (Landing.UNKNOWN,) * 6, RecentLandings()
     first = Landings((Landing.LOST, *unknown[1:]), (0, Landing.LOST), 3, 0.1)

@@ -23,7 +23,7 @@ from game.core import texts, worker
 from game.core.assets import MODELS_DIR
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import CREDIT, MOST_WAITING, MessageQueue
-from game.export import export
+from game.export import film
 from game.scenes.digits import fixing
 from tests.support import chores
 from tests.support.chores import Echo, Latest, Tick, Trace
@@ -457,9 +457,9 @@ def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: p
         def close(self, grace: float = 0.5) -> None:
             graces.append(grace)
 
-    for module in (export, fixing):
+    for module in (film, fixing):
         monkeypatch.setattr(module, "Worker", Ending)
-    export.Export(list, None, tmp_path / "film.gif").close()
+    film.Export(list, None, tmp_path / "film.gif").close()
     fix = fixing.FixRunner(tmp_path, MODELS_DIR)
     fix.begin("classic", np.ones((28, 28), np.float32), 3)
     fix.poll()

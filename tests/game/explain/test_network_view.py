@@ -215,21 +215,6 @@ def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> N
     assert pictures[0] == pictures[1]
 
 
-def test_pulses_travel_backwards_and_stand_still_with_reduced_motion(canvas: Canvas) -> None:
-    view = view_of(network_of())
-    view.show = "gradients"
-    play(view, canvas)
-
-    def frame(at_once: bool) -> bytes:
-        canvas.surface.fill((0, 0, 0))
-        view.update(at_once)
-        view.draw(canvas)
-        return pygame.image.tobytes(canvas.surface, "RGB")
-
-    assert frame(False) != frame(False)
-    assert frame(True) == frame(True)
-
-
 @pytest.mark.parametrize(
     "options",
     [

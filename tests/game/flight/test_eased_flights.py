@@ -2,15 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from ai.flights.recording import STEPS, UNHURRIED, WIDER, Easing, full
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.flight import flight_file
-from game.flight.flight import Flight, Recording, StickHolder
+from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import describe
 from game.flight.replay import ReplayedFlight
@@ -69,36 +67,6 @@ def test_a_co_pilot_that_steps_in_flies_its_own_action_in_full(monkeypatch: pyte
         step = len(flight.recording.actions) - 1
         assert flight.env.shares.tolist() == ([[9 / STEPS, -5 / STEPS]] if own == flown else [[1.0, 0.0]])
         assert (step in flight.recording.shares) is (own == flown)
-
-
-shares = st.tuples(st.integers(0, STEPS), st.integers(-STEPS, STEPS))
-
-
-@given(
-    st.lists(st.tuples(st.integers(0, 5), st.none() | shares), min_size=1, max_size=200), st.booleans(), st.booleans()
-)
-@settings(max_examples=40, deadline=None)
-def test_any_shares_survive_their_file(steps: list, wider: bool, untimed: bool):
-    recording = Recording(
-        4, "hard", 3, actions=[action for action, _ in steps], hands=[StickHolder.HUMAN] * len(steps),
-        shares={number: share for number, (_, share) in enumerate(steps) if share}, easing=Easing(wider, untimed),
-    )  # fmt: skip
-    record = record_of(Flight(3))
-    text = flight_file.to_text(Record(recording, record.entry, record.end))
-    assert flight_file.from_text(text).recording == recording
-
-
-@pytest.mark.parametrize(
-    "spoilt", ["17,0*5", "1,-17*5", "-1,0*5", "1*5", "1,2,3*5", "-*4", "-*6", "a,b*5", "-*99999999999"]
-)
-def test_shares_that_make_no_sense_are_refused(tmp_path, spoilt: str):
-    flight = Flight(3)
-    for _ in range(5):
-        flight.step(3)
-    path = tmp_path / "flight.json"
-    path.write_text(flight_file.to_text(record_of(flight)).replace('"shares": ""', f'"shares": "{spoilt}"'))
-    with pytest.raises(ValueError, match=r"flight\.json"):
-        flight_file.read(path)
 
 
 def test_a_file_of_the_version_before_is_read_unchanged():

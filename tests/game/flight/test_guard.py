@@ -15,6 +15,7 @@ from ai.lander.moment import Moment
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
+from game.explain.landings import Landing
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
@@ -168,6 +169,12 @@ def test_without_its_process_or_at_nought_nothing_is_guarded(agent):
         assert not flight.guard.safe
         assert flight.guard.decisions == 0
     assert FuturesProcess(cores=1).problem
+
+
+def test_each_reason_of_a_correction_has_its_words():
+    for after in Landing:
+        assert texts.GUARDIAN_SAVED[after.value]
+        assert texts.GUARDIAN_WHY[f"changed_{after.value}"]
 
 
 def test_a_position_of_the_stick_is_replaced_by_the_nearest_that_was_flown_ahead():

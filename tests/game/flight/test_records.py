@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.files import read_as
+from ai.flights.recording import STEPS, Easing
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
@@ -95,37 +96,32 @@ def test_a_network_of_any_name_leaves_a_line_that_can_be_read(kept: Records):
     assert kept.read(kept.entries()[-1].file)
 
 
-@pytest.mark.parametrize(
-    "spoil",
-    [
-        lambda text: "",
-        lambda text: text[: len(text) // 2],
-        lambda text: "[]",
-        lambda text: text.replace('"version": 5', '"version": 9'),
-        lambda text: text.replace('"seed": 3', '"seed": -3'),
-        lambda text: text.replace('"random"', '"nowhere"'),
-        lambda text: text.replace('"actions": "', '"actions": "9*1 '),
-        lambda text: text.replace('"actions": "', '"actions": "0*99999999999 '),
-        lambda text: text.replace('"actions": "', '"actions": "0*-5 '),
-        lambda text: text.replace('"network*', '"nobody*'),
-        lambda text: text.replace('"LANDED"', '"FLOWN"'),
-        lambda text: text.replace('"pads": 1', '"pads": 2'),
-        lambda text: text.replace('"area": 1', '"area": 2'),
-        lambda text: text.replace('"entry"', '"other"'),
-        lambda text: text.replace('"end": [', f'"end": [{10**400}, '),
-        lambda text: text.replace('"gravity": []', '"gravity": [[Infinity, 1.0]]'),
-        lambda text: text.replace('"when": ', '"when": 99999999999'),
-        lambda text: "[" * 100_000,
-        lambda text: " " * 3_000_000,
-    ],
-)
-def test_a_damaged_file_is_named_and_left_alone(kept: Records, spoil):
-    line = kept.keep(fly(), NOON)
-    path = kept.folder / line.file
-    path.write_text(spoiled := spoil(path.read_text()))
-    with pytest.raises(ValueError, match=line.file):
-        kept.read(line.file)
-    assert path.read_text() == spoiled
+SPOILT = (
+    ('"version": 5', '"version": 9'), ('"seed": 3', '"seed": -3'), ('"random"', '"nowhere"'),
+    ('"actions": "', '"actions": "9*1 '), ('"actions": "', '"actions": "0*99999999999 '),
+    ('"actions": "', '"actions": "0*-5 '), ('"network*', '"nobody*'), ('"LANDED"', '"FLOWN"'),
+    ('"pads": 1', '"pads": 2'), ('"area": 1', '"area": 2'), ('"entry"', '"other"'),
+    ('"end": [', f'"end": [{10**400}, '), ('"when": ', '"when": 99999999999'),
+    *(('"gravity": []', f'"gravity": {spoilt}') for spoilt in (
+        "7", "[[0]]", "[[0, 9.0]]", "[[-1, 0.8]]", "[[5, 0.8], [2, 0.9]]", '[[0, "a"]]', "[[0, NaN]]",
+        "[[Infinity, 1.0]]",
+    )),
+    *(('"shares": ""', f'"shares": "{spoilt}"') for spoilt in (
+        "17,0*5", "1,-17*5", "-1,0*5", "1*5", "1,2,3*5", "-*4", "-*6", "a,b*5", "-*99999999999",
+    )),
+)  # fmt: skip
+
+
+def test_a_damaged_file_is_named_and_left_alone(kept: Records):
+    path = kept.folder / kept.keep(fly(), NOON).file
+    text = path.read_text()
+    assert all(sound in text for sound, _ in SPOILT)
+    for spoilt in ("", text[: len(text) // 2], "[]", "[" * 100_000, " " * 3_000_000,
+                   *(text.replace(*spoil) for spoil in SPOILT)):  # fmt: skip
+        path.write_text(spoilt)
+        with pytest.raises(ValueError, match=path.name):
+            kept.read(path.name)
+        assert path.read_text() == spoilt
 
 
 def test_a_file_that_is_gone_is_named(kept: Records):
@@ -272,12 +268,21 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     assert not entry().outdated
 
 
-@given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))
-@settings(max_examples=50, deadline=None)
-def test_any_recording_survives_its_file(actions: list[int], seed: int):
+SHARES = st.tuples(st.integers(0, STEPS), st.integers(-STEPS, STEPS))
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 5), st.none() | SHARES), min_size=1, max_size=300),
+    st.integers(0, 2**40), st.booleans(), st.booleans(),
+)  # fmt: skip
+@settings(max_examples=60, deadline=None)
+def test_any_recording_survives_its_file(steps: list, seed: int, wider: bool, untimed: bool):
+    actions = [action for action, _ in steps]
     hands = [StickHolder.HUMAN if action % 2 else StickHolder.NETWORK for action in actions]
-    leg = LegStart(7, 12.345, bare=True) if seed % 2 else None
-    recording = Recording(seed, "hard", 3, leg=leg, actions=actions, hands=hands)
+    recording = Recording(
+        seed, "hard", 3, leg=LegStart(7, 12.345, bare=True) if seed % 2 else None, actions=actions, hands=hands,
+        shares={number: share for number, (_, share) in enumerate(steps) if share}, easing=Easing(wider, untimed),
+    )  # fmt: skip
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record
     assert json.loads(to_text(record))["version"] == 5

@@ -229,7 +229,7 @@ def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Op
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
     assert flight.hand.name == "NETWORK"
-    assert challenge.sentence(flight, controls) == texts.TUTORIAL_BROUGHT
+    assert challenge.sentence(flight, controls) == texts.TUTORIAL_BROUGHT.format(who=texts.THE_NETWORK)
     flight.hand_over()  # the player may still take it back
     challenge.follow(flight)
     assert flight.hand is StickHolder.HUMAN

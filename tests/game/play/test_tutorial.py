@@ -1,3 +1,6 @@
+"""The first flight: its lessons, and what it says, which a reader does to the letter, with every device there is."""
+
+import re
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -22,11 +25,9 @@ from tests.support.drawn import Drawn
 from tests.support.driver import Driver
 from tests.support.flights import play
 from tests.support.listener import Listener
-from tests.support.player import DEVICES, Player
 
 Open = Callable[..., Driver]
 PILOT = ScriptedPilot()
-KEYS = ("main", "left", "right")
 NAMES = [lesson.name for lesson in LESSONS if lesson.needs != COPILOT]  # the stand-in can share no stick
 pytestmark = pytest.mark.usefixtures("scripted_network")
 
@@ -37,38 +38,148 @@ def tutorial(driver: Driver) -> Tutorial:
     return challenge
 
 
-def obey(scene: PlayScene, name: str) -> int:
-    """The action that does what a lesson asks; nothing while a new flight waits for the keys to be let go."""
-    if scene.waiting and scene.flown.stuck:
-        return 0
-    fall = -scene.flight.env.velocity[0, 1]
-    simple = {"fire": 3, "fall": 0, "brake": 3 * (fall > 0.7), "lean": 1, "hand_over": 0, "take_back": 0}
-    return int(simple[name]) if name in simple else int(PILOT.act(scene.flight.env.observe())[0])
+LEFT, MAIN, RIGHT = "left", "main", "right"
+MARKED = ("TOO_FAST", "TOO_HIGH", "TOO_TILTED", "TURN_FIRST", "WATCHED", "AWAY", "STANDS", "LET_GO", "AGAIN", "READY")
+LINES = texts.TUTORIAL | {name: (getattr(texts, f"TUTORIAL_{name}"),) for name in MARKED}
+SENTENCES = [
+    (name, re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(line))))
+    for name, lines in LINES.items()
+    for line in lines
+    if line
+]
+KEYS = {MAIN: pygame.K_UP, LEFT: pygame.K_LEFT, RIGHT: pygame.K_RIGHT}
+BUTTONS = {MAIN: 1, LEFT: 3, RIGHT: 3}
 
 
-def learn(pupil: Player) -> Iterator[str]:
-    """Do as told until all is done; the lessons, as they come."""
-    last, held = "", set[str]()
-    for step in range(2500):
-        pupil.app.window.minimised = step % 10 > 0  # drawing is most of the work
-        challenge, env = tutorial(pupil), play(pupil).flight.env
-        if challenge.through:
-            break
-        if (name := challenge.lesson.name) != last:
-            yield name
-            last = name
-        action = 3 * (env.velocity[0, 1] < -1) if challenge.praise else obey(play(pupil), name)
-        wanted = {key for key, on in zip(KEYS, (action >= 3, action % 3 == 1, action % 3 == 2), strict=True) if on}
-        for key in held ^ wanted:
-            pupil.hold(key, down=key in wanted)
-        held = wanted
-        if name in ("hand_over", "take_back") and not challenge.praise:
-            pupil.press("hand over")
-        pupil.frames(1)
-    assert tutorial(pupil).through, last
-    pupil.app.window.minimised = False
-    for key in held:
-        pupil.hold(key, down=False)
+class Reader:
+    """Does with one device what is written beside the craft, `late` frames after it was read."""
+
+    def __init__(self, driver: Driver, device: str, late: int = 0) -> None:
+        self.driver, self.device, self.late = driver, device, late
+        self.held: set[str] = set()
+        self.read: list[tuple[str, dict[str, str]]] = []
+        self.touch()
+        driver.unseen = True
+
+    @property
+    def challenge(self) -> Tutorial:
+        challenge = play(self.driver).challenge
+        assert isinstance(challenge, Tutorial)
+        return challenge
+
+    def touch(self) -> None:
+        """Let the game know which device is in use."""
+        if self.device == "pad":
+            self.driver.axis(pygame.CONTROLLER_AXIS_RIGHTY, 0)
+            self.driver.app.context.controls.used_pad = 0
+        elif self.device == "mouse":
+            self.driver.move((640, 300))
+            self.driver.move((644, 300))
+
+    def sentence(self) -> tuple[str, dict[str, str]]:
+        """Return which sentence is written, and the keys that it names."""
+        scene = play(self.driver)
+        controls, flown = self.driver.app.context.controls, scene.flown
+        words = self.challenge.sentence(scene.flight, controls, waiting=flown.waiting, stuck=flown.stuck)
+        for name, pattern in SENTENCES:
+            if found := pattern.fullmatch(words):
+                return name, found.groupdict()
+        assert words in texts.TUTORIAL_GOOD.values(), words
+        return "praise", {}
+
+    def side(self, sign: str) -> str:
+        """Return which way a turn goes that is named so."""
+        controls = self.driver.app.context.controls
+        signs = {side: controls.word(held) for side, held in ((LEFT, Held.LEFT), (RIGHT, Held.RIGHT))}
+        if signs[LEFT] == signs[RIGHT]:
+            both = texts.TUTORIAL_POINT if self.device == "mouse" else texts.TUTORIAL_PUSH
+            signs = {side: text.format(key=signs[LEFT]) for side, text in zip((LEFT, RIGHT), both, strict=True)}
+        return next(side for side, each in signs.items() if each == sign)
+
+    def asked(self, name: str, keys: dict[str, str]) -> set[str]:
+        """Return what a sentence asks to be held down."""
+        env = play(self.driver).flight.env
+        match name:
+            case "fire" | "TOO_FAST" | "READY":
+                assert keys["main"] == self.driver.app.context.controls.word(Held.MAIN)
+                return {MAIN}
+            case "brake":
+                return {MAIN} if env.velocity[0, 1] < -0.8 else set()
+            case "lean":
+                return {LEFT}
+            case "upright" | "TOO_TILTED" | "TURN_FIRST":
+                return {self.side(keys["other"])}
+            case "AWAY":
+                side = self.side(keys["inward"])
+                leans = env.angle[0] * (1 if side == LEFT else -1)
+                return {MAIN} if leans > 0.3 else {side}
+            case "land":
+                action = int(PILOT.act(env.observe())[0])
+                return ({MAIN} if action >= 3 else set()) | {("", LEFT, RIGHT)[action % 3]} - {""}
+        return set()
+
+    def lessons(self, most: int = 6000) -> Iterator[str]:
+        """Do as told until all is done; the lessons, as they come."""
+        last = ""
+        for _ in range(most):
+            if self.challenge.through:
+                break
+            if (name := self.challenge.lesson.name) != last:
+                yield name
+                last = name
+            self.follow()
+        assert self.challenge.through, self.read[-1]
+        self.hold(set())
+        self.driver.unseen = False
+
+    def follow(self) -> None:
+        """Play one frame."""
+        self.read.append(self.sentence())
+        name, keys = self.read[max(0, len(self.read) - 1 - self.late)]
+        self.hold(self.asked(name, keys))
+        if name in ("hand_over", "take_back") and len(self.read) % 40 == 0:
+            self.press_hand_over()
+        self.driver.skip()
+
+    def hold(self, wanted: set[str]) -> None:
+        for name in sorted(self.held ^ wanted):
+            self.tell(name, down=name in wanted)
+        self.held = wanted
+
+    def tell(self, name: str, *, down: bool) -> None:
+        if self.device == "keys":
+            pygame.event.post(pygame.Event(pygame.KEYDOWN if down else pygame.KEYUP, key=KEYS[name], mod=0))
+        elif self.device == "mouse":
+            at = self.driver.to_window((20 if name == LEFT else 1260, 400)) if name != MAIN else pygame.mouse.get_pos()
+            if name != MAIN:
+                pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=at, rel=(0, 0), buttons=(0, 0, 0)))
+            kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
+            pygame.event.post(pygame.Event(kind, pos=at, button=BUTTONS[name]))
+        elif name == MAIN:
+            kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
+            pygame.event.post(pygame.Event(kind, button=pygame.CONTROLLER_BUTTON_A, instance_id=0))
+        else:
+            value = (-32000 if name == LEFT else 32000) if down else 0
+            axis = pygame.CONTROLLER_AXIS_LEFTX
+            pygame.event.post(pygame.Event(pygame.CONTROLLERAXISMOTION, axis=axis, value=value, instance_id=0))
+
+    def press_hand_over(self) -> None:
+        driver = self.driver
+        if self.device == "keys":
+            driver.key(pygame.K_TAB)
+        elif self.device == "pad":
+            driver.button(pygame.CONTROLLER_BUTTON_Y)
+        else:
+            driver.frames(1)
+            hints = driver.hints()
+            driver.click(hints.get(texts.HINT_HAND_OVER) or hints[texts.HINT_TAKE_BACK])
+
+
+DEVICES = ("keys", "pad", "mouse")
+
+
+def reader(open_game: Open, device: str, late: int = 0) -> Reader:
+    return Reader(open_game(PlayScene, 0, challenge=Tutorial()), device, late)
 
 
 def wait_for_another(driver: Driver) -> None:
@@ -81,20 +192,17 @@ def wait_for_another(driver: Driver) -> None:
     raise AssertionError("nothing begins again")
 
 
-@pytest.mark.parametrize("device", DEVICES)
-def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
-    open_game: Open, context: Context, device: str
-):
-    driver = pupil = Player(open_game(tutored=False), device)
-    pupil.press("confirm")
-    assert list(learn(pupil)) == NAMES
+def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(open_game: Open, context: Context):
+    driver = open_game(tutored=False)
+    driver.key(pygame.K_RETURN)
+    assert list(Reader(driver, "keys").lessons()) == NAMES
     scene = play(driver)
     assert scene.flight.outcome is Outcome.LANDED
     driver.frames(90)
     assert scene.ending.card is not None
     assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
-    pupil.press("confirm")
+    driver.key(pygame.K_RETURN)
     assert play(driver).challenge.free
     assert play(driver).waiting
     driver.app.close()
@@ -144,8 +252,7 @@ def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
 
 def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
     context.sound = sound = Listener()
-    pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
-    lessons = learn(pupil)
+    lessons = reader(open_game, "keys").lessons()
     next(lessons)
     sound.heard()
     next(lessons)
@@ -168,8 +275,9 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
 
 
 def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes_on(open_game: Open):
-    driver = pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
-    for name in learn(pupil):
+    pupil = reader(open_game, "keys")
+    driver = pupil.driver
+    for name in pupil.lessons():
         if name == "take_back":
             break
     first = play(driver).flight
@@ -211,6 +319,7 @@ def saved(driver: Driver) -> tuple[bool, bool]:
 def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: Context):
     driver = open_game(MenuScene, tutored=False)
     driver.keys(pygame.K_RETURN, pygame.K_ESCAPE)
+    driver.press_on(texts.PAUSE_LEAVE)
     assert driver.top_name == "MenuScene"
     driver.key(pygame.K_RETURN)
     assert tutorial(driver).lesson.name == "fire"
@@ -227,8 +336,8 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
 
 def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "it is gone"))
-    pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
-    assert list(learn(pupil)) == [name for name in NAMES if name not in ("hand_over", "take_back")]
+    pupil = reader(open_game, "keys")
+    assert list(pupil.lessons()) == [name for name in NAMES if name not in ("hand_over", "take_back")]
 
 
 def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
@@ -243,3 +352,35 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
     )
     driver.move((640, 360))
     assert " or " not in challenge.sentence(flight, controls).split(".")[0]
+
+
+@pytest.mark.parametrize(("device", "late"), [("keys", 18), ("pad", 0), ("mouse", 18)])
+def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: str, late: int):
+    pupil = reader(open_game, device, late)
+    assert list(pupil.lessons()) == NAMES
+    assert play(pupil.driver).flight.outcome is Outcome.LANDED
+    assert pupil.driver.app.context.settings.first_flown
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_who_holds_on_to_the_engine_is_warned_lost_told_why_and_goes_on_by_letting_go(open_game: Open, device: str):
+    pupil = reader(open_game, device)
+    pupil.driver.frames(2)
+    pupil.hold({MAIN})
+    seen, why = [], ""
+    for _ in range(600):
+        pupil.driver.skip()
+        seen.append(pupil.sentence()[0])
+        why = why or pupil.challenge.why
+    assert seen.index("TOO_HIGH") < seen.index("AGAIN")
+    assert "at the top" in why
+    assert seen[-1] == "fall"  # which says to let go of everything
+    assert play(pupil.driver).waiting
+    pupil.hold(set())
+    pupil.driver.skip(30)
+    assert not play(pupil.driver).waiting
+    assert play(pupil.driver).flight.env.velocity[0, 1] < -0.3
+    assert pupil.challenge.why
+    while pupil.challenge.lesson.name == "fall":
+        pupil.follow()
+    assert not pupil.challenge.why  # what went wrong before is done with

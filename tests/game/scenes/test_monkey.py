@@ -15,7 +15,7 @@ def folder() -> Iterator[Path]:
 
 @pytest.mark.slow
 def test_a_monkey_finds_no_fault_and_leaves_nothing_behind(folder: Path):
-    monkey = Monkey(folder, seed=7, open_sound=False)
+    monkey = Monkey(folder, seed=7)
     monkey.play(1000)
     assert not monkey.faults.found
     assert not monkey.left_behind()
@@ -27,7 +27,7 @@ def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
         raise ZeroDivisionError("a fault on purpose")
 
     monkeypatch.setattr(MenuScene, "draw", fail)
-    monkey = Monkey(folder, open_sound=False)
+    monkey = Monkey(folder)
     monkey.play(10)
     assert "a fault on purpose" in monkey.faults.found[0]
 
@@ -42,6 +42,6 @@ def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pyte
         leave(menu)
 
     monkeypatch.setattr(MenuScene, "exit", keep)
-    monkey = Monkey(folder, open_sound=False)
+    monkey = Monkey(folder)
     monkey.play(10)
     assert "1 × MenuScene still in memory" in monkey.left_behind()

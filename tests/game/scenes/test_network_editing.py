@@ -11,7 +11,6 @@ from game.core.worker import WorkerState
 from game.scenes.train.editing import NetworkEditing
 from game.scenes.train.picking import Link, Unit
 from game.scenes.train.scene import TrainScene
-from game.ui.rows import SliderRow as Slider
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.networks import on_a_link
@@ -76,34 +75,20 @@ def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Dri
     assert not {texts.EDIT_UNDO, texts.EDIT_RESTORE, texts.EDIT_LEARN_ON} & set(words(train))
 
 
-def test_a_link_is_changed_cut_and_undone_step_by_step(train: Driver) -> None:
-    seen = [values(train)]
+def test_a_link_is_cut_and_undone(train: Driver) -> None:
+    before = values(train)
     train.click(on_a_link(train.top.inside.view))
     link = editing(train).picked
     assert isinstance(link, Link)
     train.frames(2)
-    slider, first = train.the(Slider), weight(train, link)
-    left, right = slider._track
-    train.move((left + 0.6 * (right - left), slider.box.centery))
-    train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((left + 0.6 * (right - left), slider.box.centery)), button=1)
-    for share in (0.7, 0.8, 0.9):
-        train.move((left + share * (right - left), slider.box.centery))
-        train.frames(2)
-    train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((right, slider.box.centery)), button=1)
-    train.frames(2)
-    assert weight(train, link) > first
-    assert edits(train).steps == 1, "a drag is one step"
-    assert edits(train).weights == [tuple(link)]
-    seen.append(values(train))
     train.press_on(texts.EDIT_CUT)
     train.frames(2)
     assert weight(train, link) == 0
-    assert train.the(Slider).value == 0
-    for _ in range(edits(train).steps):
-        train.press_on(texts.EDIT_UNDO)
-        train.frames(2)
-        assert values(train) == seen.pop()
-    assert not seen
+    assert edits(train).weights == [tuple(link)]
+    assert texts.EDIT_CUT not in words(train), "that is done"
+    train.press_on(texts.EDIT_UNDO)
+    train.frames(2)
+    assert values(train) == before
     assert not edits(train).holds
 
 
@@ -117,7 +102,7 @@ PAD = {
 
 
 @pytest.mark.parametrize("device", ["keys", "pad"])
-def test_a_link_is_picked_and_changed_without_a_mouse(train: Driver, device: str) -> None:
+def test_a_link_is_picked_and_cut_without_a_mouse(train: Driver, device: str) -> None:
     def press(name: str) -> None:
         train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
 
@@ -131,14 +116,10 @@ def test_a_link_is_picked_and_changed_without_a_mouse(train: Driver, device: str
     press("back")
     train.frames(2)
     before = weight(train, link)
-    train.form.focus(train.the(Slider))
-    press("right")
+    train.form.focus(train.widget(texts.EDIT_CUT))
+    press("confirm")
     train.frames(3)
-    assert weight(train, link) > before
-    press("left")
-    press("left")
-    train.frames(3)
-    assert weight(train, link) < before
+    assert weight(train, link) == 0 != before
     train.form.focus(train.widget(texts.EDIT_RESTORE))
     press("confirm")
     train.frames(3)

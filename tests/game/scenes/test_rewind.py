@@ -8,12 +8,11 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.training.history import COLUMNS, PARTS, Checkpoint, Point
+from ai.training.history import COLUMNS, Checkpoint, Point
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import CHARTS, INSIDE
 from game.scenes.train.scene import TrainScene
-from game.scenes.train.status import lander_status
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 
@@ -58,9 +57,8 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
     row = int(np.abs(history["decisions"] - moment).argmin())
     assert scene.rewind.row == row
-    shown = {piece.name: piece.value for piece in scene.inside.reward_bar.pieces()}
-    assert shown == pytest.approx(dict(zip(PARTS, history.parts[row].tolist(), strict=True)))
-    line = lander_status(run, scene.moment, scene.rewind.row).line
+    assert scene.inside.paid == pytest.approx(history.parts[row])
+    line = scene._status.line
     assert f"{moment:,}" in line
     seconds = float(np.interp(moment, history["decisions"], history["seconds"]))
     assert scene.charts.charts[0].marker == pytest.approx(seconds)

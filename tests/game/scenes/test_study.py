@@ -13,6 +13,7 @@ from game.core import texts
 from game.flight import networks
 from game.scenes.train.networks import NetworksScene
 from game.scenes.train.study import StudyScene
+from game.training.knob_descriptions import label
 from tests.support.screens import study as made
 from tests.support.studies import shown_study
 
@@ -28,7 +29,7 @@ def test_trials_stand_by_their_results_and_the_chosen_one_is_told(open_game, wri
     driver.frames(20)
     assert driver.top.chosen.number == 2
     assert "Trial 2 · 120" in written
-    assert texts.STUDY_SHARE.format(share=71) in written
+    assert any(f"{label('learning_rate')} 71 %" in line for line in written)
 
 
 def test_a_trial_is_watched_and_the_players_own_network_stays_theirs(open_game, context):

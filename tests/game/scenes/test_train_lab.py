@@ -3,7 +3,9 @@
 import os
 import signal
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pygame
@@ -17,15 +19,15 @@ from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import KNOBS
-from game.scenes.train.cards import FILE, measured
 from game.scenes.train.knob import Knob
-from game.scenes.train.laboratory import came_words, why
+from game.scenes.train.laboratory import FILE, Chosen, came_words, measured, why
 from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
-from game.training.run import AHEAD
+from game.training.run import AHEAD, TrainingRun
 from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.recordings import growing, recorded
 from tests.support.small import LANDERS as SMALL
 from tests.support.written import words_written
 
@@ -122,6 +124,8 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     beside.wait(lambda: run.turns[0] > before + 3 * AHEAD)
     assert run.state is WorkerState.RUNNING
     assert "SIGKILL" in run.twin.problem
+    beside.frames(21)
+    assert beside.top.laboratory.came is None, "that is no verdict on the experiment"
     beside.press_on(texts.LAB_KEEP_EXPERIMENT)
     assert beside.said == texts.SPLIT_OVER
     assert run.twin is not None
@@ -235,6 +239,67 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str)
     press(texts.LAB_KEEP_RUN)
     assert not scene.run.twin
     assert knobs(train)
+
+
+def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
+    train: Driver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    train.top.laboratory.chosen = Chosen(experiment_of(SMALL, "no_replay"), "No replay", "never")
+    laboratory, healthy = train.top.laboratory, recorded("modern healthy")
+    run = SimpleNamespace(config=healthy.config, history=History(), twin=None)
+    run.twin = SimpleNamespace(config=healthy.config, history=History(), problem="")
+    laboratory._run, laboratory._landed = run, lambda: ("80", "12")
+    said: list[tuple[str, str]] = []
+    for whole, other in zip(growing("modern healthy"), growing("modern sabotage no_shaping"), strict=False):
+        run.history, run.twin.history = whole.history, other.history
+        laboratory.follow()
+        if said[-1:] != [now := (laboratory._figures(), laboratory.said["came"])]:
+            said.append(now)
+    begins = texts.LAB_FIGURES.format(other="12", healthy="80")
+    assert said[0] == (begins, texts.LAB_TOO_EARLY)
+    assert [figures for figures, _ in said[:-1]] == [begins] * (len(said) - 1)
+    verdicts = [texts.LAB_AS_GUESSED, texts.LAB_NOT_AS_GUESSED]
+    assert [any(each in came for each in verdicts) for _, came in said] == [False] * (len(said) - 1) + [True]
+    run.history = recorded("modern sabotage no_shaping").history
+    laboratory.follow()
+    assert (laboratory._figures(), laboratory.said["came"]) == said[-1], "a verdict stays"
+
+
+def flown(run: TrainingRun) -> bool:
+    """Whether a flight of it has ended."""
+    return bool(np.isfinite(run.history["success"]).any())
+
+
+def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = train.top
+    monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the experiment begins
+    train.press_on(texts.TRAIN_START)
+    train.wait(lambda: len(scene.run.history) >= 1)
+    assert not np.isfinite(scene.run.history["success"]).any()
+    monkeypatch.setattr(inline_worker, "TURNS", 40)
+    for answer in (texts.LAB_KEEP_RUN, texts.LAB_KEEP_EXPERIMENT):
+        split(train)
+        for each in (scene.run, scene.run.twin):
+            train.wait(partial(flown, each))
+        train.press_on(answer)
+        train.frames(30)
+        curves = {run.series.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
+        assert {row.label for row in scene._legend} <= curves
+    assert len(scene._legend) > 1
+
+
+def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
+    scene = train.top
+    train.press_on(texts.TRAIN_START)
+    train.wait(lambda: np.isfinite(scene.run.history["success"]).any())
+    split(train)
+    train.press_on(texts.LAB_KEEP_RUN)
+    train.frames(3)
+    assert scene.run.earlier == [], "its curve would lie on the other, bit for bit"
+    scene.knobs.turn("discount", 0.9)
+    train.wait(lambda: len(scene.run.history.setting_changes) > 0 and np.isfinite(scene.run.history["success"]).any())
+    split(train)
+    assert len(scene.run.earlier) == 1
 
 
 def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> None:

@@ -47,7 +47,8 @@ def test_a_mission_is_found_flown_and_left(open_screen):
     assert player.top_name == "MissionsScene"
     player.press("confirm")  # the list is where it begins
     player.frames(2)
-    player.press("pause")  # nothing has begun: it leads back at once
+    player.press("pause")
+    player.choose(texts.PAUSE_LEAVE)
     assert player.top_name == "MissionsScene"
     player.press("confirm")
     player.fly()

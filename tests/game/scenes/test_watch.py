@@ -11,7 +11,7 @@ from ai.training.config import Config
 from game.core import texts
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
-from game.explain.run_status import draw_landings
+from game.explain.readouts import draw_landings
 from game.flight.flight import DECISION_STEPS
 from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene

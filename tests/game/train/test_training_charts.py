@@ -83,16 +83,23 @@ def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> N
     assert (tick.x, tick.text) == (2.0, f"{texts.KNOBS['learning_rate']} 0.2")
 
 
+def flown() -> History:
+    history = History()
+    history.append(HEALTHY)
+    return history
+
+
 def test_a_run_keeps_its_style_as_others_come_and_go() -> None:
     runs: list[EarlierRun] = []
     for number in range(12):
-        put_beside(runs, f"run {number}", History())
+        put_beside(runs, f"run {number}", flown())
+    put_beside(runs, "without a curve", History())
     styles = {each.name: each.style for each in runs}
     assert len(set(styles.values())) == 12
     assert 0 not in styles.values(), "that is the run that goes on"
     take_away(runs, styles["run 3"])
     assert {each.name: each.style for each in runs} == {name: each for name, each in styles.items() if name != "run 3"}
-    new, again = History(), History()
+    new, again = flown(), flown()
     put_beside(runs, "new", new)
     assert runs[0] == EarlierRun("new", new, styles["run 3"])
     put_beside(runs, "run 7", again)

@@ -11,7 +11,6 @@ from ai.training.history import History, SettingChange
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.explain.reward_bar import PART_COLOURS, RewardBar, signed
 from game.scenes.train.charts import ticks_of
 from game.ui import plotting
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
@@ -283,6 +282,19 @@ def test_the_same_numbers_are_not_drawn_again(canvas: Canvas) -> None:
         assert chart.redraws > redraws
 
 
+def test_runs_behind_follow_the_axes(drawn: Callable[[Chart], np.ndarray]) -> None:
+    x = np.linspace(0.0, 20.0, 50)
+    runs = [Series(x, x / 40, "this run"), Series(x, 1 - x / 40, "before", *RUN_STYLES[1])]
+    chart, fresh = (Chart(BOX, "LOSS", limits=(0.0, 1.0)) for _ in range(2))
+    pictures = []
+    for end in (20.0, 40.0):
+        chart.set(runs, (0.0, end))
+        settle(chart)
+        pictures.append(drawn(chart))
+    fresh.set(runs, (0.0, 40.0))
+    assert np.array_equal(drawn(fresh), pictures[1])
+
+
 def test_charts_take_turns_and_rest(canvas: Canvas) -> None:
     boxes = [(40, 40 + 100 * number, 300, 90) for number in range(6)]
     charts = Charts([Chart(box, "A") for box in boxes])
@@ -442,78 +454,6 @@ def test_numbers_are_written_short() -> None:
         (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
     ):  # fmt: skip
         assert plotting.compact(value) == text
-    for value, text in ((98.2, "+98"), (-3.21, "−3.2"), (0.01, "0"), (1e30, "+1.0e30"), (NAN, "–")):
-        assert signed(value) == text
-
-
-# The reward strip
-
-PARTS = ("distance", "feet", "time", "terminal")
-
-
-def test_parts_grow_outwards_from_zero_in_their_order() -> None:
-    reward_bar = RewardBar((40, 30, 380, 60))
-    reward_bar.set(PARTS, [40.0, 30.0, -90.0, 120.0])
-    distance, feet, time, terminal = reward_bar.pieces()
-    assert time.right == distance.left
-    assert distance.right == feet.left
-    assert feet.right == terminal.left
-    assert (terminal.right - terminal.left) / (distance.right - distance.left) == pytest.approx(3)
-    assert reward_bar.box.x <= time.left
-    assert terminal.right <= reward_bar.box.right
-
-
-def test_a_part_keeps_its_colour_whatever_stands_beside_it() -> None:
-    reward_bar = RewardBar((40, 30, 380, 60))
-    reward_bar.set(PARTS, [40.0, 30.0, -90.0, 120.0])
-    before = {piece.name: piece.colour for piece in reward_bar.pieces()}
-    reward_bar.set(PARTS[::-1], [-120.0, 0.0, 3.0, -4.0])
-    assert {piece.name: piece.colour for piece in reward_bar.pieces()} == before
-    assert len(set(PART_COLOURS.values())) == len(PART_COLOURS)
-
-
-def test_the_mouse_finds_a_part() -> None:
-    reward_bar = RewardBar((40, 30, 380, 60))
-    reward_bar.set(PARTS, [40.0, 30.0, -90.0, 0.0])
-    for piece in reward_bar.pieces()[:3]:
-        found = reward_bar.piece_at(((piece.left + piece.right) / 2, 60.0))
-        assert found is not None
-        assert (found.name, found.value) == (piece.name, piece.value)
-    assert reward_bar.piece_at((60.0, 200.0)) is None
-
-
-def test_every_part_of_the_reward_has_a_colour_and_a_sentence() -> None:
-    from ai.lander.rewards import REWARDS
-    from game.core import texts
-
-    assert set(REWARDS) == set(PART_COLOURS)
-    assert set(REWARDS) <= set(texts.REWARD_PARTS)
-
-
-def test_ugly_parts_are_drawn(canvas: Canvas) -> None:
-    for values in ([], [0.0] * 4, [NAN, INF, 1e30, -1e30], [1e-12] * 4, [-5.0] * 4, [1.0, 2.0]):
-        reward_bar = RewardBar((40, 30, 380, 60))
-        reward_bar.draw(canvas)
-        for _ in range(3):
-            reward_bar.set(PARTS, values)
-            reward_bar.hover((200.0, 62.0))
-            reward_bar.draw(canvas)
-
-
-def test_a_reward_bar_that_rests_is_not_painted_again(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    painted: list[object] = []
-    line = Canvas.line
-    monkeypatch.setattr(Canvas, "line", lambda *given, **more: painted.append(given) or line(*given, **more))
-    reward_bar = RewardBar((40, 30, 380, 60))
-    reward_bar.set(PARTS, [1.0, 2.0, 3.0, 4.0])
-    reward_bar.set(PARTS, [2.0, 2.0, 3.0, 4.0])
-    for _ in range(200):
-        reward_bar.draw(canvas)
-    assert painted
-    painted.clear()
-    for _ in range(20):
-        reward_bar.draw(canvas)
-    assert not painted
 
 
 def test_a_name_in_large_type_leaves_room_for_the_latest_number(canvas: Canvas, monkeypatch) -> None:

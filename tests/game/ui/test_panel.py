@@ -81,6 +81,8 @@ def test_nothing_leaves_its_column_not_even_a_word_without_a_space():
             found = lines(text, TEXT, "regular", width, canvas.scale)
             assert "".join(found).replace(" ", "") == text.replace(" ", "").replace("\n", "")
             assert all(canvas.text_width(line) <= width * 1.02 for line in found)
+        if width > 100:  # wider than each word
+            assert " ".join(lines(LONG, TEXT, "regular", width, canvas.scale)) == LONG.strip()
     assert lines("a\n\nb", TEXT, "regular", 100.0, 1.0) == ("a", "", "b")
 
 

@@ -188,13 +188,6 @@ def test_what_is_scaled_fills_the_view_while_the_camera_pans_and_zooms_and_other
         spread(0)
 
 
-def test_one_place_is_turned_into_pixels_and_points_as_many_are():
-    view = View(1.7, (3.0, 8.0), 1.3, CLOSEST, (11, -7), 20.0)
-    for place in ((0.0, 0.0), (-12.5, 3.75), (1e3, -1e3)):
-        assert view.pixel(*place) == tuple(view.pixels(place).tolist())
-        assert view.point(*place) == tuple(view.points(place).tolist())
-
-
 def test_every_flight_begins_with_all_its_pads_in_view(subtests: pytest.Subtests):
     for seed in range(12):
         with subtests.test(seed=seed):

@@ -8,8 +8,7 @@ from ai.lander.ground import hilly
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.flight.flight import Flight
-from game.world.landscape.relief import Relief
-from game.world.particles import ParticleKind, Particles
+from game.world.particles import ParticleKind, Particles, Relief
 from game.world.stage import Stage
 from game.world.wreck import Wreck
 

@@ -11,8 +11,8 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import TEXT_SIZES
 from game.flight.flight import Flight
+from game.world.callouts import PadFactors
 from game.world.camera import Camera, View
-from game.world.pad_factors import PadFactors
 
 Drawn = dict[str, tuple[pygame.FRect, float]]
 

@@ -13,10 +13,9 @@ from game.world.craft import stand
 from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
-from game.world.landscape.relief import Relief
 from game.world.landscape.themes import LOOKS, look_of
 from game.world.landscape.wind import Wind
-from game.world.particles import DUST, Particles
+from game.world.particles import DUST, Particles, Relief
 from game.world.paths import Trails, draw_dotted, draw_faint, draw_stretch
 from game.world.stage import Stage
 from tests.support.driver import Driver
@@ -185,11 +184,10 @@ def test_a_line_of_two_points_is_drawn_alike_whatever_was_drawn_before(canvas: C
 
 def test_every_mission_has_the_sky_and_the_ground_of_its_world():
     canvas = Canvas(pygame.Surface((320, 180)))
-    moon = Backdrop(canvas.size, np.random.default_rng(7), reduced_motion=True)
 
     def colours(look: str) -> np.ndarray:
         """Mean colour above the horizon and below it, (2, 3)."""
-        moon.under(LOOKS[look]).paint(canvas.surface)
+        Backdrop(canvas.size, np.random.default_rng(7), reduced_motion=True, look=LOOKS[look]).paint(canvas.surface)
         picture = pygame.surfarray.array3d(canvas.surface).astype(float)
         return np.array([picture[:, 60:130].mean(axis=(0, 1)), picture[:, 160:].mean(axis=(0, 1))])
 
