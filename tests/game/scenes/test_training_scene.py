@@ -147,5 +147,5 @@ def test_nothing_shows_through_the_title(open_game: Callable[..., Driver], first
         canvas = Canvas(pygame.Surface((1280, 720)))
         canvas.surface.fill(behind)
         driver.top.draw_title(canvas)
-        pictures.append(pygame.image.tobytes(canvas.surface.subsurface((40, 30, 300, 60)), "RGB"))
+        pictures.append(pygame.image.tobytes(canvas.surface.subsurface((40, 26, 300, 34)), "RGB"))
     assert pictures[0] == pictures[1]
