@@ -24,7 +24,7 @@ OPENED = {
     "ai.sweep.search": ({"self._path.open"}, "writes Optuna's journal, which nothing here reads"),
     "ai.sweep.trial": ({"path.read_bytes"}, "its own code for a hash"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
-    "game.core.catalogue": ({"path.open"}, "comes with the program"),
+    "game.core.catalogue": ({"path.read_bytes"}, "comes with the program"),
     "game.core.collection": ({"shutil.copytree"}, "of plain files alone, links as links"),
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),

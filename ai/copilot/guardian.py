@@ -13,7 +13,7 @@ from ai.copilot.futures import KEYS, Future, Here, Known, Plan, Push
 
 _FARTHEST: Final = 12  # decisions of an action after which there must be a landing, with the dial at 1
 _PATIENCE: Final = 180  # steps by which the landing may be put off, from the first correction on
-_CALM: Final = 8  # decisions in a row without a correction, after which that begins anew
+_CALM: Final = 8  # decisions in a row without a correction, after which another wish lets that begin anew
 
 
 class ActionSource(IntEnum):
@@ -51,6 +51,7 @@ class Guardian:
         self.plan: Plan | None = None
         self._due = inf  # physics steps flown when it must have landed, as long as corrections follow each other
         self._calm = 0  # decisions in a row without a correction
+        self._corrected: Push | None = None  # what was asked for at the last one
 
     def knows(self, here: Here, asked: Push, known: Known) -> bool:
         """Whether it is known what comes of a push: it was flown ahead, or the held plan begins with it."""
@@ -79,8 +80,8 @@ class Guardian:
         push = next((push for push in plans if futures[push].lasts), next(iter(plans)))
         self.plan = plan = plans[push]
         corrected = offers[push] is not ActionSource.PILOT
-        self._calm = 0 if corrected else self._calm + 1
-        if self._calm >= _CALM:
+        self._calm, self._corrected = (0, asked) if corrected else (self._calm + 1, self._corrected)
+        if self._calm >= _CALM and asked != self._corrected:  # a key that is held may be felt for long in between
             self._due = inf
         elif corrected or self._due < inf:
             self._due = min(self._due, plan.ends + _PATIENCE)

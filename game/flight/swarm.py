@@ -87,13 +87,14 @@ class Swarm:
     def snapshot(self) -> dict[str, Any]:
         """Return everything but the random streams, to be put back by `restore`."""
         kept = {name: copy(value) for name, value in vars(self).items() if name not in _NOT_KEPT}
-        return {"env": self.env.snapshot(), "kept": kept}
+        return {"env": self.env.snapshot(), **kept}
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot of this swarm."""
         self.env.restore(snapshot["env"])
-        for name, value in snapshot["kept"].items():
-            setattr(self, name, copy(value))
+        for name, value in snapshot.items():
+            if name not in _NOT_KEPT:
+                setattr(self, name, copy(value))
         self.poses.take(np.ones(self.env.num_envs, dtype=bool))
 
     def _decide(self, due: Ints) -> None:

@@ -99,7 +99,7 @@ class PilotsScene(PanelScene):
         if self._shelf.kind != ACT:
             column.words(verbs)
             return
-        measure = (texts.PILOTS_CANCEL, self._cancel) if self._worker else (texts.PILOTS_MEASURE, self._measure)
+        measure = (texts.PILOTS_CANCEL, self.close) if self._worker else (texts.PILOTS_MEASURE, self._measure)
         column.words([*verbs, (texts.PILOTS_RACE, self._race), measure])
         if self._worker:
             words = texts.PILOTS_MEASURING
@@ -167,11 +167,6 @@ class PilotsScene(PanelScene):
     def _race(self) -> Transition:
         own.take(self.context, self._files[self._name])
         return push("play", rival=self.context.pilot, rival_name=self._name)
-
-    def _cancel(self) -> None:
-        self.close()
-        self._worker = None
-        self.enter()
 
     def _measure(self) -> None:
         context, self._share, self._said = self.context, 0.0, ""

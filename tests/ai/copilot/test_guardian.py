@@ -72,30 +72,31 @@ def test_the_least_is_corrected_that_lands():
     assert asked == (MAIN_LEFT, "PILOT_MAIN")
 
 
-def held_keys(saved_each, most=400, length=30, sooner=None):
-    """Hold left, which lands as late whenever it is pushed but in one decision, and is saved in each so many of them.
+def held_keys(saved_each, most=400, length=30, sooner=None, keys=(LEFT,)):
+    """Press keys in turn, which land as late but in one decision, and are saved in each so many of them.
 
-    Returns the steps flown, and in how many decisions in a row the key was felt at most.
+    Returns the steps flown, and in how many decisions in a row a key was felt at most.
     """
     guardian, steps, felt, longest = Guardian(), 0, 0, 0
     guardian.plan = plan(*(MAIN,) * length)
     while steps < 4 * most and guardian.plan.push(here := HERE._replace(steps=steps)):
-        later = plan(LEFT, *(MAIN,) * (10 if steps // 4 == sooner else length), begin=steps)
-        known = {LEFT: Future(None if steps // 4 % saved_each == 0 else later)}
-        push = guardian.choose(here, LEFT, COAST, known).push
-        felt = felt + 1 if push == LEFT else 0
+        key = keys[steps // 4 % len(keys)]
+        later = plan(key, *(MAIN,) * (10 if steps // 4 == sooner else length), begin=steps)
+        known = {key: Future(None if steps // 4 % saved_each == 0 else later)}
+        push = guardian.choose(here, key, COAST, known).push
+        felt = felt + 1 if push == key else 0
         longest, steps = max(longest, felt), steps + 4
     return steps, longest
 
 
 def test_held_keys_put_the_landing_off_for_three_seconds_and_no_longer():
     first = 4 * 30  # steps flown when the plan lands that was held at the first correction
-    for saved_each in (2, 3, 6):
+    for saved_each in (2, 3, 6, 12):
         assert first + 160 < held_keys(saved_each)[0] <= first + 180, saved_each
     soonest = 4 * 16  # pushed in its fifth decision, it lands after eleven
     assert soonest + 160 < held_keys(3, sooner=5)[0] <= soonest + 180
-    steps, felt = held_keys(30)
-    assert steps == 4 * 400, "who is seldom corrected flies on"
+    steps, felt = held_keys(30, keys=(LEFT, RIGHT))
+    assert steps == 4 * 400, "who presses another key, and is seldom corrected, flies on"
     assert felt == 29
 
 

@@ -184,6 +184,12 @@ def test_until_the_first_answer_it_coasts(tmp_path: Path, monkeypatch: pytest.Mo
     pilot = OwnPilot(tmp_path / "pilot.py", clock=Clock())
     assert flown(pilot) == 0
     assert not pilot.ready
+    save(pilot, "damaged")
+    assert flown(pilot) == 0
+    assert pilot.problem
+    assert not pilot.flies_on  # for there was none
+    save(pilot, "loading")
+    assert flown(pilot) == 0
     Fake.all[-1].does = "3"
     assert flown(pilot) == 3
     assert pilot.ready

@@ -208,7 +208,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(open_ga
     driver.app.close()
     assert saved(driver) == (True, True)
     settings = open_game(SettingsScene, "flights")
-    assert settings.widget(texts.TUTORIAL_OPEN)._figure() == texts.TUTORIAL_FLOWN
+    assert settings.widget(texts.TUTORIAL_OPEN)._figure == texts.TUTORIAL_FLOWN
 
 
 def test_only_the_very_first_flight_teaches(open_game: Open):

@@ -283,7 +283,7 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
             train.wait(partial(flown, each))
         train.press_on(answer)
         train.frames(30)
-        curves = {run.series.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
+        curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
         assert {row.label for row in scene._legend} <= curves
     assert len(scene._legend) > 1
 

@@ -9,6 +9,7 @@ import pytest
 
 from game.core import texts
 from game.core.scene import Scene
+from game.drawing.canvas import Canvas
 from game.scenes.train import digits, scene
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE
 from game.scenes.train.digits import DigitTrainingScene
@@ -135,3 +136,16 @@ def test_one_that_cannot_be_built_lets_go_of_the_place_of_its_runs(
         first(context)
     assert places(context.user_dir) == before
     del kept
+
+
+@pytest.mark.parametrize("first", SCENES)
+def test_nothing_shows_through_the_title(open_game: Callable[..., Driver], first: type[Scene]) -> None:
+    driver = open_game(first)
+    driver.frames(2)
+    pictures = []
+    for behind in ("black", "white"):
+        canvas = Canvas(pygame.Surface((1280, 720)))
+        canvas.surface.fill(behind)
+        driver.top.draw_title(canvas)
+        pictures.append(pygame.image.tobytes(canvas.surface.subsurface((40, 26, 300, 34)), "RGB"))
+    assert pictures[0] == pictures[1]

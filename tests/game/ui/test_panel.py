@@ -86,6 +86,15 @@ def test_nothing_leaves_its_column_not_even_a_word_without_a_space():
     assert lines("a\n\nb", TEXT, "regular", 100.0, 1.0) == ("a", "", "b")
 
 
+def test_a_number_and_its_unit_stay_on_a_line_and_so_does_what_a_text_ties_together():
+    said = "it landed 27 % (91\u00a0to\u00a0100 %) of its flights, at 3.4 m/s, 12 kg, in 40 s"
+    for width in range(140, 500, 7):
+        found = lines(said, TEXT, "regular", float(width), 1.0)
+        assert " ".join(found) == said.replace("\u00a0", " ")
+        whole = ("27 %", "(91 to 100 %)", "3.4 m/s", "12 kg", "40 s")
+        assert all(any(each in line for line in found) for each in whole), (width, found)
+
+
 def test_columns_stand_side_by_side_or_one_below_the_other():
     for width, beside in ((700, True), (500, False)):
         cursor, lefts, tops = Cursor(0, 0, width), [], []

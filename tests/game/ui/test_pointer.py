@@ -74,9 +74,9 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
     bring(player, (before[0], before[1] - 100))
     player.frames(60)
     assert seen()[1] < before[1] - 80
-    player.hold("confirm", down=False)
+    player.press("back")  # which lets go as well
     assert scene.grip is None
-    player.press("back")
+    player.hold("confirm", down=False)
     assert not player.form.typing
     assert scene._lit() is None
     player.press("pause")
@@ -87,6 +87,10 @@ def test_who_looks_elsewhere_lets_go(take: Take):
     player = take(PhysicsScene, "spin")
     scene = player.top
     bring(player, tuple(scene.view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
+    player.hold("confirm", down=True)
+    assert scene.grip is not None
+    player.hold("confirm", down=False)
+    assert scene.grip is None
     player.hold("confirm", down=True)
     player.hold("left", down=True)
     pygame.event.post(pygame.Event(pygame.WINDOWFOCUSLOST))

@@ -1,4 +1,4 @@
-"""Edges of the area: seen, heard and told of before a craft leaves, which then flies out of view."""
+"""Edges of the area: seen, heard and said before a craft leaves; and what comes down beside the pad."""
 
 from collections.abc import Callable
 
