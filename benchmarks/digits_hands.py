@@ -3,7 +3,7 @@
     python -m benchmarks.digits_hands [--each 12] [--sheet misread.png] [--models DIR]
 
 The styles are those of `benchmarks.hand_styles`. Hands differ in slant, aspect, size, place, unsteadiness and haste: a
-pen is slower where it turns (by the two-thirds power law, Lacquaniti et al. 1983), a mouse reports where it is 60 to 125
+pen is slower where it turns (the two-thirds power law, Lacquaniti et al. 1983), a mouse reports where it is 60 to 125
 times a second, in whole pixels. Prints what each network reads of each style, and of each table of styles; a sheet
 shows what Modern, else Classic, misreads: drawn, and as it was seen.
 """

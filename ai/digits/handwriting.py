@@ -1,4 +1,4 @@
-"""Digits that simulated hands write, to learn from beside MNIST's: as the world writes them, and as a mouse reports them.
+"""Digits that simulated hands write, to learn from beside MNIST's: as the world writes, and as a mouse reports it.
 
 A style is a way to write a digit, given by the few points that a pen goes through. A hand writes it in its own manner:
 wide or narrow, slanted, turned, bent, with round or sharp corners, sure or unsure of where points lie, and in haste

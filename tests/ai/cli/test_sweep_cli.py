@@ -71,7 +71,7 @@ def test_a_study_that_has_begun_keeps_its_plan(study, tmp_path, capsys):
 
 @pytest.fixture
 def evil(tmp_path, monkeypatch):
-    """Somebody else's study whose environment is a module that lies beside it, and leaves a trace when it is imported."""
+    """Another's study whose environment is a module that lies beside it, and leaves a trace when it is imported."""
     (tmp_path / "evilcwd.py").write_text(f"open({str(tmp_path / 'trace')!r}, 'w').close()\n")
     monkeypatch.syspath_prepend(tmp_path)
     study = Study.create(tmp_path / "study", tiny_plan())
