@@ -9,7 +9,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-# Networks read and write Floats, physics computes in Doubles; the type checker tells them apart.
+# Networks read and write Floats, physics computes in Doubles; the type checker keeps them apart.
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
 Bools = NDArray[np.bool_]

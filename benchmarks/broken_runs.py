@@ -131,9 +131,9 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
         config, case.seed, clock=_clock(ALONE if config.num_envs == 1 else MANY / config.num_envs)
     )
     try:
-        told = next(going)
+        messages = next(going)
         while taken < case.decisions and time.process_time() - began < PATIENCE:
-            for message in told:
+            for message in messages:
                 if isinstance(message, NetworkState):
                     network.values = message.values
                     network.gradients[:] = message.gradients
@@ -146,7 +146,7 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
                 for name, value in turns.pop(0)[1].items():
                     going.send(("change", name, value))
                     done.append((taken, name, value))
-            told = next(going)
+            messages = next(going)
     except FloatingPointError as error:
         problem = str(error)
     finally:
@@ -163,8 +163,8 @@ def _clock(turns: float) -> Callable[[], float]:
 def write(file: Path, tables: dict[str, np.ndarray], described: dict[str, Any]) -> None:
     """Write all cases; numbers keep as many digits as a curve shows, so that the file is small."""
     arrays = {name: _short(table).T.copy() for name, table in tables.items()}
-    told = np.array(json.dumps({"columns": COLUMNS, "cases": described}, default=vars))
-    np.savez_compressed(file, allow_pickle=False, described=told, **arrays)
+    text = np.array(json.dumps({"columns": COLUMNS, "cases": described}, default=vars))
+    np.savez_compressed(file, allow_pickle=False, described=text, **arrays)
 
 
 def _short(table: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
     python -m benchmarks.digits_hands [--each 12] [--sheet misread.png] [--models DIR]
 
 The styles are those of `benchmarks.hand_styles`. Hands differ in slant, aspect, size, place, unsteadiness and haste: a
-pen is slower where it turns (by the two-thirds power law, Lacquaniti et al. 1983), a mouse tells where it is 60 to 125
+pen is slower where it turns (the two-thirds power law, Lacquaniti et al. 1983), a mouse reports where it is 60 to 125
 times a second, in whole pixels. Prints what each network reads of each style, and of each table of styles; a sheet
 shows what Modern, else Classic, misreads: drawn, and as it was seen.
 """
@@ -57,7 +57,7 @@ def _smooth(points: np.ndarray, samples: int = 60) -> np.ndarray:
 
 
 def events(strokes: list[np.ndarray], rng: np.random.Generator, size: int) -> list[np.ndarray]:
-    """Return where the mouse is told to be, stroke by stroke, on a pad so many points wide."""
+    """Return where the mouse is reported to be, stroke by stroke, on a pad so many points wide."""
     tall = np.exp(rng.uniform(np.log(0.12), np.log(0.88))) * size
     extent = np.array([tall * rng.uniform(0.45, 0.9), tall])
     turn, slant, rate = rng.normal(0, 0.09), rng.normal(0.12, 0.18), rng.uniform(60, 125)
@@ -73,17 +73,17 @@ def events(strokes: list[np.ndarray], rng: np.random.Generator, size: int) -> li
         ways.append(way[np.r_[True, np.hypot(*np.diff(way, axis=0).T) > 1e-6]])
     low, high = np.min([way.min(axis=0) for way in ways], axis=0), np.max([way.max(axis=0) for way in ways], axis=0)
     at = 16 + rng.random(2) * np.maximum(size - 32 - (high - low), 0) - low
-    return [_told(way + at, haste, rate, rng.normal(0, steady, (4000, 2))) for way in ways]
+    return [_reported(way + at, haste, rate, rng.normal(0, steady, (4000, 2))) for way in ways]
 
 
-def _told(way: np.ndarray, haste: float, rate: float, tremor: np.ndarray) -> np.ndarray:
+def _reported(way: np.ndarray, haste: float, rate: float, tremor: np.ndarray) -> np.ndarray:
     steps = np.diff(way, axis=0)
     lengths, angles = np.hypot(*steps.T), np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
     bend = np.abs(np.diff(angles, append=angles[-1])) / lengths * 100  # radians to a hundred points
     times = np.cumsum(np.r_[0, lengths / haste * (1 + bend) ** (1 / 3)])
     asked = np.r_[np.arange(0, times[-1], 1 / rate), times[-1]][: len(tremor)]
-    told = np.stack([np.interp(asked, times, axis) for axis in way.T], axis=1) + tremor[: len(asked)]
-    return told.round()
+    reported = np.stack([np.interp(asked, times, axis) for axis in way.T], axis=1) + tremor[: len(asked)]
+    return reported.round()
 
 
 def draw(scene: DigitsScene, strokes: list[np.ndarray]) -> None:

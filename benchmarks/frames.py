@@ -87,7 +87,7 @@ FRAMES = 1000
 RUNS = 3
 # Milliseconds: of the 99th percentile of frames, and of entering a scene.
 LIMITS = {"1280x720": (8.0, 50.0), "1920x1080": (8.0, 50.0), "2560x1440": (12.0, 80.0), "3840x2160": (16.0, 120.0)}
-SETTLED = 30  # frames for which a scene below another has been on the screen
+COVERED = 30  # frames for which a scene below another has been on the screen
 SEVEN = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
 FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
 SHARED: dict[str, Any] = {"assist": 0.6}
@@ -243,7 +243,7 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
         for below in given:
             if isinstance(below, Scene):
                 app.show(lambda _, below=below: below)  # type: ignore[misc]
-                for _ in range(SETTLED):
+                for _ in range(COVERED):
                     app.tick()
         while not idle():
             app.tick()
@@ -263,13 +263,13 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
 
 
 def most_memory() -> float:
-    """Return the most memory that the process has held since the last call, in MB; 0 where no system tells."""
+    """Return the most memory that the process has held since the last call, in MB; 0 where no system says."""
     try:
-        told = Path("/proc/self/status").read_text()
+        status = Path("/proc/self/status").read_text()
         Path("/proc/self/clear_refs").write_text("5")
     except OSError:
         return 0.0
-    return next(int(line.split()[1]) / 1024 for line in told.splitlines() if line.startswith("VmHWM"))
+    return next(int(line.split()[1]) / 1024 for line in status.splitlines() if line.startswith("VmHWM"))
 
 
 def _made(make: Callable[..., Scene | None], given: tuple[Any, ...]) -> Callable[[Context], Scene]:

@@ -191,9 +191,9 @@ def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None
         times = [f"{1e3 * np.median(each):.0f}, {1e3 * np.quantile(each, 0.99):.0f} ms"
                  for each in (found.delays, first, every)]  # fmt: skip
         shares = [f"{each / found.decisions:.1%}" for each in (found.late, found.waited)]
-        told = [f"{hands}, {period * DT:.1f} s", decisions_of(dial), found.decisions, *shares,
+        cells = [f"{hands}, {period * DT:.1f} s", decisions_of(dial), found.decisions, *shares,
                 f"{np.mean(found.known):.1f}", *times]  # fmt: skip
-        print("| " + " | ".join(map(str, told)) + " |", flush=True)
+        print("| " + " | ".join(map(str, cells)) + " |", flush=True)
 
 
 def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: int, seed: int, into: Path) -> None:
@@ -231,8 +231,8 @@ def table(done: list[dict[str, Any]], names: list[str]) -> None:
                 sum(row[part] * row["episodes"] for row in same) / flights
                 for part in ("success", "crash", "overridden", "held", "lost_held")
             ]
-            told = [name, decisions_of(dial) if dial else "alone", flights, *(f"{share:.1%}" for share in shares)]
-            print("| " + " | ".join(map(str, told)) + " |")
+            cells = [name, decisions_of(dial) if dial else "alone", flights, *(f"{share:.1%}" for share in shares)]
+            print("| " + " | ".join(map(str, cells)) + " |")
 
 
 def main() -> None:

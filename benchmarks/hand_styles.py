@@ -1,7 +1,7 @@
 """Styles of handwriting that owe nothing to MNIST and nothing to `ai.digits.handwriting`, for measuring alone.
 
 Strokes through points in percent of a box, x to the right and y down; what is between them is smooth, and a point
-given twice is a corner. No network and no setting was chosen by either table. HANDS was the first, and what it told of
+given twice is a corner. No network and no setting was chosen by either table. HANDS was first, and what it showed of
 long flags is why hands are learned from at all; UNSEEN was drawn up after that, and read first when all was over.
 """
 

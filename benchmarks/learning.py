@@ -8,7 +8,7 @@ authors tuned for Gymnasium's lunar lander, and flies ours through Gymnasium, on
 spawns. Every second of training (the rival: every ten) the network flies 2,000 random validation spawns greedily, one
 that is taught hard spawns 1,000 of those as well, and the best so far is kept. A share counts as reached when the best
 lands it of the random ones; then, and not before, it flies 2,000 test spawns, which had no say in anything, and the
-table tells what it lands of those. `--runs` measures what is kept after so many seconds instead, by 500 and 250
+table shows what it lands of those. `--runs` measures what is kept after so many seconds instead, by 500 and 250
 validation flights, on random and on hard test spawns; networks of the first two thirds are not tried. Seconds are
 processor time on one thread, of training alone.
 """

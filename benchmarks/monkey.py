@@ -51,7 +51,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
     problems: list[str] = []
-    memory, files, told = [], [], 0
+    memory, files, printed = [], [], 0
     with playground() as folder:
         monkey = Monkey(folder, arguments.seed)
         for look in range(1, LOOKS + 1):
@@ -65,9 +65,9 @@ def main() -> int:
                 f"{len(monkey.faults.found)} faults, {len(left)} left behind",
                 flush=True,
             )
-            for each in (*left, *monkey.faults.found[told:]):
+            for each in (*left, *monkey.faults.found[printed:]):
                 print(f"\n{each}\n", flush=True)
-            told = len(monkey.faults.found)
+            printed = len(monkey.faults.found)
     if monkey.faults.found:
         problems.append(f"{len(monkey.faults.found)} faults")
     if memory[-1] - memory[2] > GROWTH:

@@ -6,7 +6,7 @@ A lander over twenty segments of ground, while it falls, while it comes to rest 
 dropped at places of their own, hundreds still rock and roll), and once it lies there; ten columns of ten boxes at
 rest; a hundred boxes falling in a heap. Each is stepped alone and in a batch of worlds with starts of
 their own; what a batch takes is divided by its worlds. In both engines bodies fall asleep once they have been still for
-half a second (pymunk's, which do not unless they are told to, are told to), unless `--awake` forbids it. All sides take
+half a second (pymunk's, which do not unless asked to, are asked to), unless `--awake` forbids it. All sides take
 turns, run after run, and processor time is counted, so that a busy machine does not matter; medians of the runs are
 printed. A ratio above 1 means that pymunk is quicker.
 """
@@ -74,7 +74,7 @@ def lander(name: str, skip: float) -> Scene:
 
 
 def columns(sleeping: bool) -> Scene:
-    """Ten columns that sleep in both engines by then, or awake ones that still settle, step by step."""
+    """Ten columns that sleep in both engines by then, or awake ones that still come to rest, step by step."""
     scene = Scene("10 columns of 10 boxes", 9.81, skip=5 if sleeping else 1, seconds=3, batch=16, spread=0.0)
     scene.things.append(Thing([Polygon.box(60, 1)], (0.0, -0.5), static=True))
     for i in range(100):

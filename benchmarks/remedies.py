@@ -104,9 +104,9 @@ class Watched:
         """Take one step; return the hint that is shown."""
         return self.take(next(self._run))
 
-    def take(self, told: tuple[Any, ...]) -> Hint | None:
+    def take(self, messages: tuple[Any, ...]) -> Hint | None:
         """Follow the messages."""
-        for message in told:
+        for message in messages:
             if isinstance(message, RunStarted):
                 self.config = message.config
             elif isinstance(message, Point | SettingChange | Checkpoint):

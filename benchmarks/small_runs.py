@@ -39,13 +39,13 @@ def memory(seeds: Sequence[int]) -> None:
     """Print for each memory and seed the share of tests that landed at yesterday's end, and the least of today."""
     for kind, prioritised, keep in (("even", False, None), ("surprising", True, None), ("latest", False, LATEST)):
         plan, config = MemoryChapter.PLAN._replace(keep=keep), SMALL_RUN.changed(prioritised=prioritised)
-        told, least = [], []
+        ranges, least = [], []
         for seed in seeds:
             shares = [state.passed or 0.0 for state in run(config, seed, plan, YESTERDAY + TODAY)[YESTERDAY - 1 :]]
             least.append(min(shares[1:]))
-            told.append(f"{shares[0]:.2f} to {least[-1]:.2f}")
+            ranges.append(f"{shares[0]:.2f} to {least[-1]:.2f}")
         mean, low, high = mean_of_shares(least)
-        print(f"memory {kind}: {', '.join(told)}; least {mean:.0%} ({low:.0%} to {high:.0%})", flush=True)
+        print(f"memory {kind}: {', '.join(ranges)}; least {mean:.0%} ({low:.0%} to {high:.0%})", flush=True)
 
 
 def daring(seeds: Sequence[int]) -> None:

@@ -126,8 +126,8 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
             problems.append(f"{run.name}: {error}")
         if run.problem:
             problems.append(f"{run.name}: {run.problem}")
-    told = ", ".join(f"{count} {state}" for state, count in states.items())
-    print(f"killed {rounds} ({told}); {len(runs)} saved runs, {len(problems)} problems", flush=True)
+    counts = ", ".join(f"{count} {state}" for state, count in states.items())
+    print(f"killed {rounds} ({counts}); {len(runs)} saved runs, {len(problems)} problems", flush=True)
     return problems
 
 

@@ -218,7 +218,7 @@ class DeepQAgent:
         """Take one step of the optimizer on a minibatch; return the temporal-difference errors (n,).
 
         `states` (n, features) are normalised; `weights` (n,) are those of importance sampling. The optimizer only asks
-        whether the cost is finite: a sum of squares tells that of either cost.
+        whether the cost is finite: a sum of squares shows that of either cost.
         """
         predicted = self.online.forward_propagate(states)
         rows = np.arange(len(actions))

@@ -117,7 +117,7 @@ def refusing(command: Command) -> Command:
             return command(arguments)
         except REFUSED as error:
             if isinstance(error, OSError) and error.errno is not None and error.filename is None:
-                raise  # it could not be written, which is told for all commands alike
+                raise  # it could not be written, which is reported for all commands alike
             return fail(reason(error))
 
     return run

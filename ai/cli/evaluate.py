@@ -44,14 +44,14 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     if arguments.spawn not in (None, *SPAWNS):
         raise ValueError(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
     score = _own(arguments) if arguments.pilot else _score(arguments)
-    told: dict[str, Any] = score.to_json()
+    values: dict[str, Any] = score.to_json()
     if score.success is not None:
-        told["success_interval"] = wilson(score.success, score.episodes)
+        values["success_interval"] = wilson(score.success, score.episodes)
     if arguments.json:
-        print(json.dumps(told, indent=2))
+        print(json.dumps(values, indent=2))
         return 0
-    low, high = told.pop("success_interval", (0.0, 0.0))
-    for name, value in told.items():
+    low, high = values.pop("success_interval", (0.0, 0.0))
+    for name, value in values.items():
         if value is None or isinstance(value, int):
             figure = "–" if value is None else str(value)
         else:

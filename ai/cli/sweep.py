@@ -140,7 +140,7 @@ def _place(arguments: argparse.Namespace) -> Path:
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
     """Return a study to go on with; raises ValueError for options that only a new one can have.
 
-    A study may be a stranger's: an environment whose name would import code has to be named by the user as well.
+    A study may be somebody else's: an environment whose name would import code has to be named by the user as well.
     """
     from ai.sweep.study import Study
     from ai.sweep.trial import check_ready
@@ -203,7 +203,7 @@ def _study(arguments: argparse.Namespace) -> int:
 
 
 def _print(study: Study) -> None:
-    """Print the table of a study, whose texts may be a stranger's."""
-    from ai.sweep.report import told
+    """Print the table of a study, whose texts may be somebody else's."""
+    from ai.sweep.report import table
 
-    print("\n".join(cli.readable(line, len(line)) for line in told(study).splitlines()), flush=True)
+    print("\n".join(cli.readable(line, len(line)) for line in table(study).splitlines()), flush=True)

@@ -173,7 +173,7 @@ def _train_and_keep(training: Run, output: Path, limit: Limit) -> int:
 def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None:
     """Train until the limit or the user, who adds to `stop`, says so; keep the run now and then, and show how it goes.
 
-    That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is told
+    That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is said
     once: a disk that is full now may have room by the end.
     """
     from ai.training.run import Keeper
@@ -189,8 +189,8 @@ def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None
                 print(f"training {share:.0%}: {words}", file=cli.Unheard(), flush=True)
             if stop:
                 break
-            for told in keeper.go_on(training.clock()):
-                said = f"could not write to {output}: {told.problem}; training goes on"
+            for failure in keeper.go_on(training.clock()):
+                said = f"could not write to {output}: {failure.problem}; training goes on"
                 bar.write(cli.readable(said), file=cli.Unheard())
     keeper.wait()
 

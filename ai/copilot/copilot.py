@@ -183,10 +183,10 @@ class CoPilot:
         seen = self._seen(observation, surroundings)
         values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
-        told = observation, pilot, values, meant, likely, self.assist, self.mode, self.reward_scale
+        given = observation, pilot, values, meant, likely, self.assist, self.mode, self.reward_scale
         if self.mode is Mode.GUARDIAN and env is not None:
             pushes = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
-            return SharedDecision(*told, *self._save(env, pushes, values, known, whole=whole))
+            return SharedDecision(*given, *self._save(env, pushes, values, known, whole=whole))
         weigh = _guard if self.mode is Mode.GUARDIAN else _tolerate
         best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist), self.reward_scale)
         candidates = _candidates(pilot, best)
@@ -196,7 +196,7 @@ class CoPilot:
         overridden = action != pilot
         source[(pilot == COAST) & overridden] = ActionSource.HANDS_OFF
         flown = np.where(overridden[:, None], ACTION_SHARES[action], pushed)
-        return SharedDecision(*told, action, best, source, feasible, flown, overridden)
+        return SharedDecision(*given, action, best, source, feasible, flown, overridden)
 
     def _seen(self, observation: Floats, surroundings: Floats | None) -> Floats:
         """Return what the network reads, (n, pads, features): the surroundings, too, if it has inputs for them."""

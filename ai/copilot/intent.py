@@ -38,8 +38,8 @@ class Intent:
         worse = (values - values.max(axis=2, keepdims=True)) / (_TEMPER * self.reward_scale)
         chance = np.exp(worse)
         chance /= chance.sum(axis=2, keepdims=True)
-        told = (1.0 - _SLIP) * chance[np.arange(slots), :, pilot] + _SLIP / actions
-        likely = self.likely(slots, pads) ** _MEMORY * told
+        likelihood = (1.0 - _SLIP) * chance[np.arange(slots), :, pilot] + _SLIP / actions
+        likely = self.likely(slots, pads) ** _MEMORY * likelihood
         likely /= likely.sum(axis=1, keepdims=True)
         says = (pilot != COAST) & np.isfinite(likely).all(axis=1)
         self._likely = np.where(says[:, None], likely, self._likely)

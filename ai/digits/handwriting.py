@@ -1,8 +1,8 @@
-"""Digits that simulated hands write, to learn from beside MNIST's: as the world writes them, and as a mouse tells them.
+"""Digits that simulated hands write, to learn from beside MNIST's: as the world writes, and as a mouse reports it.
 
 A style is a way to write a digit, given by the few points that a pen goes through. A hand writes it in its own manner:
 wide or narrow, slanted, turned, bent, with round or sharp corners, sure or unsure of where points lie, and in haste
-or not, which decides how many of them a mouse tells. Few of MNIST's writers give a 1 a long flag: here it is common.
+or not, which decides how many of them a mouse reports. Few of MNIST's writers give a 1 a long flag: here it is common.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ class ValidationReading:
         """The network's parameters."""
         return self._classifier.network.values
 
-    def told(self) -> tuple[float, Confusion]:
+    def result(self) -> tuple[float, Confusion]:
         """Return accuracy and confusion matrix of the network."""
         labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
         table = np.zeros((DIGITS, DIGITS), np.int64)

@@ -42,7 +42,7 @@ class FolderKind:
     files: tuple[str, ...] = ()
     folders: Mapping[str, "FolderKind"] = field(default_factory=dict)
 
-    def stranger(self, folder: Path) -> str:
+    def foreign(self, folder: Path) -> str:
         """Return a few words on what in a folder does not belong into one of this kind; empty if all of it does."""
         try:
             said = read_json(folder / CONFIG)
@@ -53,7 +53,7 @@ class FolderKind:
         for path in folder.iterdir():
             known = path.is_file() and any(fnmatchcase(path.name, name) for name in (CONFIG, *_DESKTOP, *self.files))
             if path.is_dir() and not path.is_symlink() and path.name in self.folders:
-                if within := self.folders[path.name].stranger(path):
+                if within := self.folders[path.name].foreign(path):
                     return f"{within} in {path.name}"
             elif path.is_symlink() or not known:
                 return brief(path.name, 60)
@@ -94,7 +94,7 @@ def atomic_folder(target: str | Path, kind: FolderKind | None = NETWORK) -> Iter
         shutil.rmtree(new, ignore_errors=True)
         raise
     for old in _aside(path, _OLD):
-        if kind and (not any(old.iterdir()) or not kind.stranger(old)):
+        if kind and (not any(old.iterdir()) or not kind.foreign(old)):
             shutil.rmtree(old, ignore_errors=True)
 
 
@@ -193,8 +193,8 @@ def _checked(target: str | Path, kind: FolderKind) -> Path:
         return path
     if not path.is_dir():
         raise FileExistsError(f"{path} is something else than a folder, and is left as it is")
-    if any(path.iterdir()) and (stranger := kind.stranger(path)):
-        raise FileExistsError(f"{path} holds something else than a {kind.format} ({stranger}), and is left as it is")
+    if any(path.iterdir()) and (foreign := kind.foreign(path)):
+        raise FileExistsError(f"{path} holds something else than a {kind.format} ({foreign}), and is left as it is")
     return path
 
 

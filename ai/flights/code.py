@@ -42,7 +42,7 @@ _SIGNS: Final = b"+."  # base64's last two: unlike others, no messenger takes th
 _ALIEN: Final = re.compile(r"[^0-9A-Za-z+.-]+")
 _CODE: Final = re.compile(r"tranq(\d{0,3})-((?:(?!tranq\d{0,3}-)[0-9A-Za-z+.])*)(-over)?")
 _FAR: Final = 10**6  # metres
-_GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is told
+_GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is given
 _LONGEST_NAME: Final = 40  # characters
 _HELD: Final = 6 * len(StickHolder)  # an action, and who holds the stick
 _RUN: Final = 21  # steps of a run, at most: a run fits a byte below _MOVES
@@ -67,7 +67,7 @@ class CodeError(ValueError):
 
 
 @dataclass(kw_only=True)
-class _Told(Start):
+class _Content(Start):
     """What a code says besides the inputs."""
 
     leg: LegAsList
@@ -81,12 +81,12 @@ class _Told(Start):
 def code_of(flight: SharedFlight) -> str:
     """Return the code of a flight."""
     recording, claim = flight.recording, flight.claim
-    told = recording.start() | {
+    values = recording.start() | {
         "course": flight.course, "barred": flight.barred[:_LONGEST_NAME], "outcome": claim.outcome.name,
         "points": claim.points, "end": [round(_GRID * min(max(number, -_FAR), _FAR)) for number in claim.end],
     }  # fmt: skip
     packer = zlib.compressobj(9, wbits=-zlib.MAX_WBITS, memLevel=9, zdict=_USUAL)
-    data = packer.compress(json.dumps(told, separators=(",", ":")).encode() + b"\n" + _packed(recording))
+    data = packer.compress(json.dumps(values, separators=(",", ":")).encode() + b"\n" + _packed(recording))
     data += packer.flush()
     return f"{BEGIN}{_spelt(data + zlib.crc32(data).to_bytes(4, 'big'))}{END}"
 
@@ -114,7 +114,7 @@ def _packed(recording: Recording) -> bytes:
 
 
 def _asked(places: list[Shares]) -> list[int]:
-    """Return the actions that sticks ask for: a code tells only where another was flown."""
+    """Return the actions that sticks ask for: a code says only where another was flown."""
     return [nearest_action(main / STEPS, side / STEPS) for main, side in places]
 
 
@@ -154,12 +154,14 @@ def _read(data: bytes) -> SharedFlight:
     line, _, inputs = unpacker.decompress(data, _LARGEST).partition(b"\n")
     if not unpacker.eof or unpacker.unused_data:
         raise ValueError("it is longer than any flight, or has no end")
-    told = read_as(_Told, parse_json(line.decode()), strict=True)
-    if told.leg and (told.mission or told.gravity or told.pads != 1):
+    content = read_as(_Content, parse_json(line.decode()), strict=True)
+    if content.leg and (content.mission or content.gravity or content.pads != 1):
         raise ValueError("a leg of a descent has a start and rules of its own")
-    x, y, angle = (number / _GRID for number in told.end)
-    claim = Claim(Outcome[told.outcome], told.points, (x, y, angle))
-    return SharedFlight(Recording.begun(told, told.leg, *_unpacked(inputs)), claim, told.course, told.barred)
+    x, y, angle = (number / _GRID for number in content.end)
+    claim = Claim(Outcome[content.outcome], content.points, (x, y, angle))
+    return SharedFlight(
+        Recording.begun(content, content.leg, *_unpacked(inputs)), claim, content.course, content.barred
+    )
 
 
 def _unpacked(inputs: bytes) -> tuple[list[int], list[StickHolder], dict[int, Shares]]:

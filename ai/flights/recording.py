@@ -109,13 +109,13 @@ class Recording(Start):
     def begun(cls, start: Start, leg: LegAsList, actions: list[int], hands: list[StickHolder],
               shares: dict[int, Shares]) -> Self:  # fmt: skip
         """Return the recording of a start that was read, with these inputs."""
-        told = {each.name: getattr(start, each.name) for each in fields(Start)}
-        return cls(**told, leg=LegStart(*leg) if leg else None, actions=actions, hands=hands, shares=shares)
+        values = {each.name: getattr(start, each.name) for each in fields(Start)}
+        return cls(**values, leg=LegStart(*leg) if leg else None, actions=actions, hands=hands, shares=shares)
 
     def start(self) -> dict[str, Any]:
         """Return its start, with the leg, as JSON can hold it."""
-        told = {each.name: getattr(self, each.name) for each in fields(Start)}
-        return told | {"easing": asdict(self.easing), "leg": astuple(self.leg) if self.leg else None}
+        values = {each.name: getattr(self, each.name) for each in fields(Start)}
+        return values | {"easing": asdict(self.easing), "leg": astuple(self.leg) if self.leg else None}
 
 
 @dataclass(frozen=True)

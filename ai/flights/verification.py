@@ -122,7 +122,7 @@ def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:
 def is_true(flight: SharedFlight, real: Earned) -> bool:
     """Whether a flight was flown where it says, and really earned what it claims."""
     claim, steps = flight.claim, len(flight.recording.actions)
-    away = max(abs(told - flown) for told, flown in zip(claim.end, real.end, strict=True))
+    away = max(abs(claimed - flown) for claimed, flown in zip(claim.end, real.end, strict=True))
     return (
         in_its_place(flight) and away <= TOLERANCE and claim.medal <= real.medal
         and (claim.outcome, claim.points, steps) == (real.outcome, real.points, real.steps)
@@ -171,5 +171,5 @@ def _shares(recordings: Sequence[Recording], step: int, actions: Ints) -> Double
     """Return the shares of thrust (n, 2) of a step; None if every engine gave all of it."""
     if not any(step in each.shares for each in recordings):
         return None
-    told = zip(recordings, actions.tolist(), strict=True)
-    return np.array([each.shares.get(step) or full(action) for each, action in told]) / STEPS
+    pairs = zip(recordings, actions.tolist(), strict=True)
+    return np.array([each.shares.get(step) or full(action) for each, action in pairs]) / STEPS

@@ -1,6 +1,6 @@
 """Landing anywhere: random sites, and landers that each fly at one of their own.
 
-A site is what `LanderEnv.around` tells of: gravity, engine, air, wind, fuel, time, and a pad that may be narrow
+A site is what `LanderEnv.around` describes: gravity, engine, air, wind, fuel, time, and a pad that may be narrow
 or move. Sites are drawn from named distributions, as starts are from `ai.lander.spawns`.
 """
 
@@ -107,7 +107,7 @@ TRAINED: Final = (*SITES, "tank", "tank", "outage", "outage", *["any"] * 5)
 class AnywhereEnv(LanderEnv):
     """LanderEnv in which every flight is at a site of its own, and observations, (n, 9 + k), tell of it.
 
-    `reset` draws sites from distributions with names in `sites`, as often as they are named; `settle` sets them.
+    `reset` draws sites from distributions with names in `sites`, as often as they are named; `set_sites` sets them.
 
     Attributes:
         kind: the number in `sites` of the distribution that each slot's site was drawn from, (n,).
@@ -138,7 +138,7 @@ class AnywhereEnv(LanderEnv):
         self.settled: Doubles = np.tile(np.array(Site()), (num_envs, 1))
         self.world.params.quadratic_drag = np.tile(self.world.params.quadratic_drag, (num_envs, 1, 1))
         self._air: Doubles = self.world.params.quadratic_drag[:, self.lander.index]  # (n, 3), a view
-        self.settle(self.settled)
+        self.set_sites(self.settled)
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight at a new site in the slots of `mask` (n,), or in all; return every slot's observation."""
@@ -147,10 +147,10 @@ class AnywhereEnv(LanderEnv):
             rng = self.streams[slot]
             self.kind[slot] = rng.integers(len(self.sites))
             self.settled[slot] = SITES[self.sites[self.kind[slot]]](rng)
-        self.settle(self.settled)
+        self.set_sites(self.settled)
         return super().reset(mask)
 
-    def settle(self, sites: Sequence[Site] | Doubles) -> None:
+    def set_sites(self, sites: Sequence[Site] | Doubles) -> None:
         """Let every slot be at a given site from now on, until the next reset."""
         self.settled[:] = sites
         site = Site(*self.settled.T.copy())

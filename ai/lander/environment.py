@@ -65,7 +65,7 @@ class LanderEnv:
     Attributes:
         params, ground, conditions, limits, weights: as given; numbers of all but ground and weights may be arrays (n,).
         curriculum: which spawn is drawn from, by landings.
-        strictness: share of the limits of a touch, as pilots are told, that holds.
+        strictness: share of the limits of a touch, as pilots observe them, that holds.
         landings: landings so far, in all flights.
         streams: the Generator from which each slot's flights are drawn, n of them; can be replaced at any time.
         world, lander, pad_bodies: the engine's worlds, the craft's body in them, and the pads' rows among bodies.
@@ -106,7 +106,7 @@ class LanderEnv:
             return np.zeros((num_envs, *shape), dtype)
 
         self.target: Ints = zeros()  # number of the pad that observations and rewards are about
-        self.actions: Ints = zeros()  # what each was last told to do, 0 to 5
+        self.actions: Ints = zeros()  # the latest of each, 0 to 5
         self.shares: Doubles = zeros(2, dtype=float)  # of thrust: main engine 0 to 1; jets -1, left, to 1, right
         self.outcome: Ints = zeros()  # an `Outcome`
         self.cause: Ints = zeros()  # of a crash, a `Cause`

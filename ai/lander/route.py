@@ -31,12 +31,12 @@ def sink_of(pilot: Pilot) -> float:
     """Return how fast a pilot comes down, in m/s, over a pad that stays just below it: measured by letting it fly."""
     env = LanderEnv(1, 0, frame_skip=4)
     env.place(np.ones(1, dtype=bool), np.array([[0.0, 20.0, 0.0, 0.0, 0.0, 0.0]]))
-    settled, measured = _MEASURED
+    warm_up, measured = _MEASURED
     speeds = []
-    for _ in range(settled + measured):
+    for _ in range(warm_up + measured):
         env.glide(pilot.act(_over_flying_pad(env, np.zeros(2)), held=env.actions))
         speeds.append(-float(env.velocity[0, 1]))
-    return float(np.mean(speeds[settled:]))
+    return float(np.mean(speeds[warm_up:]))
 
 
 def _over_flying_pad(env: LanderEnv, pad_velocity: Doubles) -> Floats:

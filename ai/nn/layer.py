@@ -58,7 +58,7 @@ class Layer(ABC):
         return tuple(Parameter(name, value, np.zeros_like(value)) for name, value in values.items())
 
     def initial_value(self, name: str) -> Array:
-        """Return the first value of a parameter, of the shape that `shapes` tells; draw it from `rng`."""
+        """Return the first value of a parameter, of the shape that `shapes` names; draw it from `rng`."""
         raise NotImplementedError(f"{type(self).__name__} does not say how {name} begins")
 
     def join(self, rng: np.random.Generator, dtype: npt.DTypeLike) -> None:

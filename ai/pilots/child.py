@@ -35,22 +35,22 @@ Answer = Callable[[bytes], bytes]  # numbers to numbers, as bytes
 
 def main() -> None:
     """Serve until the other end is closed."""
-    asked, told = _own_ends()
-    kind, path, source = ((read_block(asked) or b"").decode() for _ in range(3))
+    requests, replies = _own_ends()
+    kind, path, source = ((read_block(requests) or b"").decode() for _ in range(3))
     questions: SimpleQueue[bytes] = SimpleQueue()
-    Thread(target=_listen, args=(asked, told, path, questions), daemon=True).start()
+    Thread(target=_listen, args=(requests, replies, path, questions), daemon=True).start()
     try:
         answer, many = load(kind, path, source)
-        write_block(told, READY + MANY * many)
+        write_block(replies, READY + MANY * many)
         while True:
             question = questions.get()
             try:
                 block = ANSWER + answer(question)
             except BaseException as error:  # the file may raise whatever it likes, SystemExit too
                 block = PROBLEM + problem(error, path).encode()
-            write_block(told, block)
+            write_block(replies, block)
     except BaseException as error:
-        write_block(told, PROBLEM + problem(error, path).encode())
+        write_block(replies, PROBLEM + problem(error, path).encode())
 
 
 def _own_ends() -> tuple[BinaryIO, BinaryIO]:
@@ -69,15 +69,15 @@ def _own_ends() -> tuple[BinaryIO, BinaryIO]:
     return ends
 
 
-def _listen(asked: BinaryIO, told: BinaryIO, path: str, questions: SimpleQueue[bytes]) -> None:
+def _listen(requests: BinaryIO, replies: BinaryIO, path: str, questions: SimpleQueue[bytes]) -> None:
     """Receive in a thread: an endless loop can say where it is, and ends too once nobody asks any more."""
-    while (question := read_block(asked)) is not None:
+    while (question := read_block(requests)) is not None:
         if question:
             questions.put(question)
             continue
         stack = traceback.walk_stack(sys._current_frames()[main_thread().ident or 0])
         line = next((line for frame, line in stack if frame.f_code.co_filename == path), 0)
-        write_block(told, PROBLEM + f"{line} ".encode())
+        write_block(replies, PROBLEM + f"{line} ".encode())
     os._exit(0)
 
 

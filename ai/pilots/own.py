@@ -83,7 +83,7 @@ class OwnPilot:
         problem: what is wrong with the file as it was saved last; empty while there is nothing.
         flies_on: whether the last good one flies then.
         chosen: whether it is to fly, and not another that the player chose since.
-        told: the words on it that were told last, for whoever tells each once.
+        reported: the words on it that were reported last, for whoever reports each once.
         ready: whether a process has answered yet; until then it coasts.
 
     """
@@ -91,7 +91,7 @@ class OwnPilot:
     work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
 
     def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
-        self.path, self.problem, self.told = path, "", ""
+        self.path, self.problem, self.reported = path, "", ""
         self.flies_on, self.ready, self.chosen = False, False, True
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None
@@ -198,16 +198,16 @@ class OwnPilot:
 def _stamp(path: Path) -> tuple[int, int]:
     """Return what changes when a file is saved."""
     try:
-        told = path.stat()
+        status = path.stat()
     except OSError:
         return 0, 0
-    return told.st_mtime_ns, told.st_size
+    return status.st_mtime_ns, status.st_size
 
 
 def pay_by(env: LanderEnv, path: Path) -> Callable[[], None]:
     """Let landers be paid by a file's `pay`, as it is now; return what ends its process. Raises PilotError.
 
-    `step` raises it too, where the file fails. The parts of the usual pay go on being told beside it.
+    `step` raises it too, where the file fails. The parts of the usual pay go on being reported beside it.
     """
     process, usual = loaded(path, PAY), env.step
 

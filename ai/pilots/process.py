@@ -126,18 +126,18 @@ class PilotProcess:
         except Empty:
             return None
         self._waiting -= 1
-        kind, told = block[:1], block[1:]
+        kind, content = block[:1], block[1:]
         if block == _ENDED:
             self._answers.put(_ENDED)  # for whoever asks again
             self.close()
             raise PilotError("its process has ended")
         if kind == PROBLEM:
-            line, _, words = told[: WORDS + 20].decode(errors="replace").partition(" ")
+            line, _, words = content[: WORDS + 20].decode(errors="replace").partition(" ")
             raise PilotError(CONTROLS.sub(" ", words), int(line) if line.isdecimal() and len(line) < 9 else 0)
         if kind not in (READY, ANSWER):
             raise PilotError("its process gave an answer that is none")
         self.many = self.many or block == READY + MANY
-        return told
+        return content
 
     @property
     def gone(self) -> bool:
@@ -151,15 +151,15 @@ class PilotProcess:
 
 def _talk(process: subprocess.Popen[bytes], questions: SimpleQueue[bytes | None], answers: SimpleQueue[bytes]) -> None:
     """Send and receive in a thread: a process that reads or writes half of it blocks nobody else."""
-    asked, told = cast("BinaryIO", process.stdin), cast("BinaryIO", process.stdout)
+    requests, replies = cast("BinaryIO", process.stdin), cast("BinaryIO", process.stdout)
     with suppress(OSError, ValueError):  # it has ended, or was closed meanwhile
         for _ in range(3):  # what the file is
-            write_block(asked, questions.get() or b"")
-        while block := read_block(told):
+            write_block(requests, questions.get() or b"")
+        while block := read_block(replies):
             answers.put(block)
             if (question := questions.get()) is None:
                 break
-            write_block(asked, question)
+            write_block(requests, question)
     answers.put(_ENDED)
 
 

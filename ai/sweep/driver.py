@@ -78,8 +78,8 @@ class Driver:
 
     """
 
-    def __init__(self, study: Study, workers: int, say: Callable[[str], None], told: Callable[[], None]) -> None:
-        self._study, self._workers, self._say, self._told = study, workers, say, told
+    def __init__(self, study: Study, workers: int, say: Callable[[str], None], report: Callable[[], None]) -> None:
+        self._study, self._workers, self._say, self._report = study, workers, say, report
         self.search = search_of(study)
         self.jobs: dict[Any, _Job] = {}
         self.lost: dict[int, str] = {}
@@ -98,7 +98,7 @@ class Driver:
                 break
             for results in ray.wait(list(self.jobs), timeout=_TURN)[0]:
                 self._take(results)
-            self._told()
+            self._report()
 
     def _start(self, job: _Job) -> None:
         """Begin a trial, or go on with it from its last checkpoint. A worker waits until its results are taken."""

@@ -1,4 +1,4 @@
-"""What a study tells: as a table, as JSON, and as one page of HTML that needs nothing else and runs no code."""
+"""What a study found: as a table, as JSON, and as one page of HTML that needs nothing else and runs no code."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ svg text { fill: #8a95ad; font-size: 11px } .axis, .other, .best { fill: none; s
 
 
 def report(study: Study) -> dict[str, Any]:
-    """Return all that a study tells, as JSON can hold it."""
+    """Return all that a study found, as JSON can hold it."""
     best = study.best()
     return {
         "study": study.folder.name,
@@ -39,8 +39,8 @@ def report(study: Study) -> dict[str, Any]:
     }
 
 
-def told(study: Study, most: int = _BEST) -> str:
-    """Return what a study tells as a table of text, with at most so many trials."""
+def table(study: Study, most: int = _BEST) -> str:
+    """Return what a study found as a table of text, with at most so many trials."""
     plan, best, ranked = study.plan, study.best(), study.ranked()
     trials = f"{study.folder.name}: {len(study.trials)} of {plan.trials} trials, {len(plan.seeds)} seeds each"
     better = f"({'less' if study.metric.sign == 1 else 'more'} is better)"
@@ -98,7 +98,7 @@ def page(study: Study) -> str:
     title = escape(study.folder.name)
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>{_STYLE}</style>'
-        f"</head><body>\n<h1>{title}</h1>\n{''.join(plots)}<pre>{escape(told(study, _SHOWN))}</pre>\n</body></html>\n"
+        f"</head><body>\n<h1>{title}</h1>\n{''.join(plots)}<pre>{escape(table(study, _SHOWN))}</pre>\n</body></html>\n"
     )
 
 

@@ -31,9 +31,9 @@ Result = TypeVar("Result")
 
 
 def results(
-    tasks: Sequence[Callable[[], Result]], processes: int = 1, told: Callable[[], object] = lambda: None
+    tasks: Sequence[Callable[[], Result]], processes: int = 1, report: Callable[[], object] = lambda: None
 ) -> list[Result]:
-    """Return what each task returns, in their order, from so many processes; `told` is called as each is done.
+    """Return what each task returns, in their order, from so many processes; `report` is called as each is done.
 
     One process is this one. Raises BrokenProcessPool, a RuntimeError, if one dies.
     """
@@ -41,12 +41,12 @@ def results(
         done = []
         for task in tasks:
             done.append(task())
-            told()
+            report()
         return done
     with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
         futures = [pool.submit(task) for task in tasks]
         for _ in as_completed(futures):
-            told()
+            report()
         return [future.result() for future in futures]
 
 

@@ -74,7 +74,7 @@ class SeedResult:
     value: float | None  # of the metric; None if there is none
     problem: _Words  # why the run ended before its time; empty if it did not
     seconds: Duration  # of training, by the clock
-    figures: dict[str, Any]  # of the network kept, as its command tells them; empty for a run that was stopped early
+    figures: dict[str, Any]  # of the network kept, as its command prints them; empty for a run that was stopped early
 
     @property
     def rank(self) -> tuple[float, float]:

@@ -74,7 +74,7 @@ class DigitSession(Session[DigitTraining]):
     def _tell_reading(self, reading: ValidationReading) -> None:
         """Tell what came of a reading, and keep its network if it is the best so far."""
         training = self.training
-        accuracy, confusion = reading.told()
+        accuracy, confusion = reading.result()
         best = self._best is None or accuracy >= self._best[0]
         if best:
             self._best = accuracy, reading.values.copy()
@@ -97,7 +97,7 @@ class DigitSession(Session[DigitTraining]):
                 reading = ValidationReading(training, training.best_classifier())
                 while not reading.go_on():
                     yield
-                self.messages.append(reading.told()[1])
+                self.messages.append(reading.result()[1])
         if self.keep:
             self.messages.append(self.keeper.save(self.keep, final=True))
         yield

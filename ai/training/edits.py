@@ -77,7 +77,7 @@ class NetworkEdits:
 
 
 class NetworkEditor:
-    """Editor of an agent's networks. The agent does not learn from the first edit until it is told to.
+    """Editor of an agent's networks. The agent does not learn from the first edit until asked to.
 
     While it is held, nothing but the editor changes the parameters, so that undoing restores them bit for bit.
     """

@@ -25,7 +25,7 @@ _LOW: Final = np.where(np.arange(NUM_FEATURES) < 7, -_HIGH, 0).astype(np.float32
 
 
 class GymLander(gymnasium.Env[Floats, np.int64]):
-    """One lander. `spawn` names a distribution of `ai.lander.spawns`; `info` tells the outcome so far."""
+    """One lander. `spawn` names a distribution of `ai.lander.spawns`; `info` has the outcome so far."""
 
     metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own declaration
 

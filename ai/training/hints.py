@@ -85,7 +85,7 @@ def _short_sight(run: RecentCurves) -> bool:
 
 
 def _no_guide(run: RecentCurves) -> bool:
-    """Whether no part of the reward tells a lander on its way that it comes closer."""
+    """Whether no part of the reward shows a lander on its way that it comes closer."""
     weights = run.config.reward_weights
     return run.is_late() and run.last("success") < 0.6 and not any(getattr(weights, part) for part in _PARTS)
 
@@ -267,8 +267,8 @@ class Adviser:
         self._now = now
         run = RecentCurves(history, config, dead_share, clipped_share)
         # Before that, curves are those of before a change, and it is not known yet what that has brought.
-        settled = run.since_change() >= 100.0 * COLLAPSE  # flights
-        holding = {rule.name: rule for rule in RULES if (settled or rule.of_settings) and rule.holds(run)}
+        steady = run.since_change() >= 100.0 * COLLAPSE  # flights
+        holding = {rule.name: rule for rule in RULES if (steady or rule.of_settings) and rule.holds(run)}
         self._since = {name: self._since.get(name, now) for name in holding}
         if self.shown is not None and now - self._shown_since < STAY:
             return self.shown

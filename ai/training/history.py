@@ -204,8 +204,8 @@ class History:
         self.reward_scale = 1.0
         self._table: Doubles = np.empty((CAPACITY, len(self.columns)))
         self._length = 0
-        self._stride = 1  # how many points told for one kept
-        self._told = 0
+        self._stride = 1  # how many points appended for one kept
+        self._appended = 0
 
     def __len__(self) -> int:
         return self._length
@@ -238,14 +238,14 @@ class History:
 
     def _append_point(self, point: _Measured) -> None:
         # The latest point is always the last row; the next takes its place, unless its number is on the stride.
-        if self._length == 0 or (self._told - 1) % self._stride == 0:
+        if self._length == 0 or (self._appended - 1) % self._stride == 0:
             if self._length == CAPACITY:
                 kept = self._table[::2].copy()
                 self._length, self._stride = len(kept), 2 * self._stride
                 self.points[...] = kept
             self._length += 1
         self._table[self._length - 1] = point.values
-        self._told += 1
+        self._appended += 1
 
     def _append_setting_change(self, entry: SettingChange) -> None:
         if entry.amends:
@@ -281,7 +281,7 @@ class History:
         """Write the history into a run's folder; raises OSError if it cannot be written."""
         described = {
             "version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale,
-            "stride": self._stride, "told": self._told,
+            "stride": self._stride, "told": self._appended,
             "alterations": [asdict(change) for change in self.setting_changes],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
@@ -312,9 +312,9 @@ class History:
         """Take over what was read; raises KeyError, TypeError or ValueError where it makes no sense."""
         if points.ndim != 2 or points.shape[1] != len(described.columns) or len(points) > CAPACITY:
             raise ValueError(f"points of shape {points.shape}")
-        self._length, self._stride, self._told = len(points), described.stride, described.told
-        if self._told < self._length:
-            raise ValueError(f"{self._length} points of {self._told}, at a stride of {self._stride}")
+        self._length, self._stride, self._appended = len(points), described.stride, described.told
+        if self._appended < self._length:
+            raise ValueError(f"{self._length} points of {self._appended}, at a stride of {self._stride}")
         # By name, so that a run from before a part was added can still be looked at.
         self.points[...] = 0.0
         for column, name in enumerate(described.columns):
@@ -322,10 +322,10 @@ class History:
                 self[name][...] = points[:, column]
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
-        for told, row in zip(described.checkpoints, values, strict=True):
-            if told.scale is not None:
-                Normalizer(len(told.scale["mean"])).load(told.scale)  # raises for one that makes no sense
-            self.checkpoints.append(Checkpoint(told.seconds, told.decisions, told.success, row, told.scale))
+        for saved, row in zip(described.checkpoints, values, strict=True):
+            if saved.scale is not None:
+                Normalizer(len(saved.scale["mean"])).load(saved.scale)  # raises for one that makes no sense
+            self.checkpoints.append(Checkpoint(saved.seconds, saved.decisions, saved.success, row, saved.scale))
         # An older run has the names of its day.
         self.setting_changes = [replace(each, name=Config.name_now(each.name)) for each in described.alterations]
         self.validations = list(described.validations)
@@ -345,7 +345,7 @@ def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
 
 
 def _scale_beside(folder: str | Path) -> float:
-    """Return the reward scale of the network beside a history from before it told its own; 1 if there is none."""
+    """Return the reward scale of the network beside a history from before it had its own; 1 if there is none."""
     try:
         scale = number_of(read_json(inside(folder, "config.json"))["config"]["reward_scale"], 0)
     except (OSError, ValueError, TypeError, KeyError):

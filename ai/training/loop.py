@@ -327,28 +327,28 @@ class Training(Run):
             self.statistics.load_state(state["statistics"])
         load_agent_state(agent, state["agent"], env.num_envs)
         whole = [
-            restore_buffer(folder, getattr(agent, name), told, self.task.num_actions)
-            for name, told in state["buffers"].items() if name in ("replay", "successes")
+            restore_buffer(folder, getattr(agent, name), saved, self.task.num_actions)
+            for name, saved in state["buffers"].items() if name in ("replay", "successes")
         ]  # fmt: skip
         self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
         self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
         self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
         self.best = self.best_network = None
-        if (told := state["best"]) is not None:
-            self.best = self.task.read_score(told["score"])
-            self.best_network = self._read_network(told, "best")
-        if (told := state["validation"]) is not None:  # its flights begin anew
+        if (saved := state["best"]) is not None:
+            self.best = self.task.read_score(saved["score"])
+            self.best_network = self._read_network(saved, "best")
+        if (saved := state["validation"]) is not None:  # its flights begin anew
             validated = self.last_agent()
-            validated.restore(*self._read_network(told, "validated network"))
-            validated.decisions = count_of(told["decisions"])
+            validated.restore(*self._read_network(saved, "validated network"))
+            validated.decisions = count_of(saved["decisions"])
             self._begin_validation(validated)
         return True
 
-    def _read_network(self, told: Mapping[str, Any], name: str) -> Network:
+    def _read_network(self, saved: Mapping[str, Any], name: str) -> Network:
         normalizer = Normalizer(self.task.num_features) if self.agent.normalizer else None
         if normalizer:
-            normalizer.load(told["normalizer"])
-        return array_like(self.agent.network.values, told["values"], name), normalizer
+            normalizer.load(saved["normalizer"])
+        return array_like(self.agent.network.values, saved["values"], name), normalizer
 
 
 def _network(agent: DeepQAgent) -> Network:

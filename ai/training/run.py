@@ -111,14 +111,14 @@ class Keeper:
         if self._folder is None or (self._writing is not None and not self._writing.done()):
             return []
         saved, self._writing = self._writing and _outcome(self._folder, self._writing), None
-        told = [saved] if saved and saved.problem not in ("", self._problem) else []
+        failures = [saved] if saved and saved.problem not in ("", self._problem) else []
         if saved:
             self._problem = saved.problem
         if now >= self._due:
             began = time.monotonic()
             self._writing = self._write(self._folder)
             self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / SHARE)
-        return told
+        return failures
 
     def save(self, folder: Path, final: bool = False) -> Saved:
         """Keep it in a folder, and wait until it is done; `final` measures it as well."""

@@ -151,8 +151,8 @@ class Session(ABC, Generic[R]):
                 self.commands[name](self, *arguments)
             except (OSError, ValueError, FloatingPointError) as error:
                 self.messages.append(Refused(command, problem_of(error)))
-        told, self.messages = tuple(self.messages), []
-        return told
+        messages, self.messages = tuple(self.messages), []
+        return messages
 
     def record(self, entry: Entry) -> None:
         """Add an entry to the history, and tell it."""

@@ -26,7 +26,7 @@ SMALL_RUN: Final = Config(
     target_update_interval=100, tau=1.0, fly_target=False, epsilon_decisions=8_000, epsilon_spread=0.0, num_envs=16,
     steadiness=0.0, reward_weights=RewardWeights(),
 )  # fmt: skip
-RECENT: Final = 40  # latest flights whose share of landings is told
+RECENT: Final = 40  # latest flights whose share of landings is shown
 TESTED: Final = 12  # landers that are tested
 RECENT_TESTS: Final = 24
 

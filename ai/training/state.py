@@ -75,23 +75,23 @@ class StateWriter:
         self.folder, self._folder = folder, state_folder(folder)
         self._token = secrets.token_hex(4)  # no two processes ever write blocks of one name
         self._written: dict[tuple[str, int], str] = {}  # files of blocks, by their buffers and numbers
-        for name, told in state["buffers"].items() if state else ():
-            numbers = range((told["added"] - told["kept"]) // BLOCK, told["added"] // BLOCK)
-            self._written |= {(name, number): file for number, file in zip(numbers, told["blocks"], strict=False)}
+        for name, saved in state["buffers"].items() if state else ():
+            numbers = range((saved["added"] - saved["kept"]) // BLOCK, saved["added"] // BLOCK)
+            self._written |= {(name, number): file for number, file in zip(numbers, saved["blocks"], strict=False)}
 
     def prepare(self, moment: int, state: State, buffers: Mapping[str, ReplayBuffer]) -> PreparedState:
         """Copy what is to be written of a state and of replay buffers, which may change from now on."""
         priorities = 16 * sum(len(each) for each in buffers.values() if isinstance(each, PrioritisedReplayBuffer))
         room = MOST - (MOST >> 5) - priorities
-        told, blocks = {}, dict[str, NDArray[np.uint8]]()
+        saved, blocks = {}, dict[str, NDArray[np.uint8]]()
         for name, buffer in buffers.items():
             size = _packed(buffer).itemsize
             kept = min(len(buffer), max(0, room // size - BLOCK))
             room -= kept * size
-            told[name] = self._told(name, buffer, kept, blocks)
-        return PreparedState(_name(moment), state | {"buffers": told}, blocks)
+            saved[name] = self._buffer_state(name, buffer, kept, blocks)
+        return PreparedState(_name(moment), state | {"buffers": saved}, blocks)
 
-    def _told(self, name: str, buffer: ReplayBuffer, kept: int, blocks: dict[str, NDArray[np.uint8]]) -> State:
+    def _buffer_state(self, name: str, buffer: ReplayBuffer, kept: int, blocks: dict[str, NDArray[np.uint8]]) -> State:
         """Return the state of a buffer's newest transitions; add those blocks that are not on the disk yet."""
         oldest, whole = buffer.added - kept, buffer.added // BLOCK
         numbers = range(oldest // BLOCK, whole) if kept else range(0)
@@ -99,15 +99,15 @@ class StateWriter:
             if (name, number) not in self._written:
                 self._written[name, number] = file = f"{name}-{self._token}-{number}.npy"
                 blocks[file] = _records(buffer, number * BLOCK, (number + 1) * BLOCK)
-        told: State = {
+        state: State = {
             "start": buffer.start, "size": len(buffer), "added": buffer.added, "kept": kept,
             "blocks": [self._written[name, number] for number in numbers],
             "rest": _records(buffer, max(oldest, whole * BLOCK), buffer.added),
         }  # fmt: skip
         if isinstance(buffer, PrioritisedReplayBuffer):
             rows = (buffer.start + np.arange(len(buffer) - kept, len(buffer))) % buffer.capacity
-            told |= {"largest": buffer.largest, "priorities": buffer.priorities[rows]}
-        return told
+            state |= {"largest": buffer.largest, "priorities": buffer.priorities[rows]}
+        return state
 
     def write(self, prepared: PreparedState) -> None:
         """Write a state; raises OSError if it cannot be."""
@@ -125,7 +125,7 @@ class StateWriter:
             shutil.rmtree(self._folder, ignore_errors=True)
             self._written.clear()
             return
-        names = {prepared.name, *(file for told in prepared.state["buffers"].values() for file in told["blocks"])}
+        names = {prepared.name, *(file for saved in prepared.state["buffers"].values() for file in saved["blocks"])}
         with suppress(OSError):
             for path in self._folder.iterdir():
                 if path.name not in names:
@@ -166,17 +166,17 @@ def going_on(folder: str | Path) -> Iterator[None]:
         raise ModelFormatError(state_folder(folder), [said]) from error
 
 
-def restore_buffer(folder: str | Path, buffer: ReplayBuffer, told: Any, num_actions: int) -> bool:
+def restore_buffer(folder: str | Path, buffer: ReplayBuffer, state: Any, num_actions: int) -> bool:
     """Fill an empty replay buffer from its state and the blocks; return whether it is as it was.
 
     Raises OSError, KeyError, TypeError or ValueError for what no such buffer can have been.
     """
-    start, size = count_of(told["start"], 0, buffer.capacity - 1), count_of(told["size"], 0, buffer.capacity)
-    added, kept = count_of(told["added"]), count_of(told["kept"], 0, size)
+    start, size = count_of(state["start"], 0, buffer.capacity - 1), count_of(state["size"], 0, buffer.capacity)
+    added, kept = count_of(state["added"]), count_of(state["kept"], 0, size)
     if added < size:
         raise ValueError("fewer transitions were added than are held")
     oldest, whole, packed = added - kept, added // BLOCK, _packed(buffer)
-    names = told["blocks"]
+    names = state["blocks"]
     if len(names) != (len(range(oldest // BLOCK, whole)) if kept else 0):
         raise ValueError("blocks of transitions are missing")
     rows = (start + np.arange(size - kept, size)) % buffer.capacity
@@ -188,15 +188,15 @@ def restore_buffer(folder: str | Path, buffer: ReplayBuffer, told: Any, num_acti
         _fill(
             buffer, rows[first - oldest : (number + 1) * BLOCK - oldest], block[first - number * BLOCK :], num_actions
         )
-    rest = array_like(np.empty((added - max(oldest, whole * BLOCK), packed.itemsize), np.uint8), told["rest"])
+    rest = array_like(np.empty((added - max(oldest, whole * BLOCK), packed.itemsize), np.uint8), state["rest"])
     _fill(buffer, rows[kept - len(rest) :], rest, num_actions)
     buffer.start, buffer.size, buffer.added = (start + size - kept) % buffer.capacity, kept, added
     if isinstance(buffer, PrioritisedReplayBuffer):
-        priorities = array_like(np.empty(kept), told["priorities"], "priorities")
+        priorities = array_like(np.empty(kept), state["priorities"], "priorities")
         if (priorities <= 0).any():
             raise ValueError("priorities are above 0")
         buffer.priorities[rows] = priorities
-        buffer.largest = float(number_of(told["largest"], 0))
+        buffer.largest = float(number_of(state["largest"], 0))
     return kept == size
 
 

@@ -172,8 +172,8 @@ def finished(trial: Trial[T]) -> T:
             return done.value  # type: ignore[no-any-return]
 
 
-def flown(pilot: Pilot, env: LanderEnv, told: slice = slice(None)) -> Trial[Doubles]:
-    """Fly all slots of `env`, which has just been reset, to the end; return the sums of the slots `told`.
+def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[Doubles]:
+    """Fly all slots of `env`, which has just been reset, to the end; return the sums of the slots `measured`.
 
     Those of two parts of all flights add up: how many ended in each outcome; returns; seconds, and seconds of main
     engine, of the landings; engines that went on or off; seconds of all flights.
@@ -190,10 +190,10 @@ def flown(pilot: Pilot, env: LanderEnv, told: slice = slice(None)) -> Trial[Doub
         observation = result.observation
         returns += result.reward
         yield
-    outcomes, seconds, fuel = env.outcome[told], env.time[told], env.fuel[told]
+    outcomes, seconds, fuel = env.outcome[measured], env.time[measured], env.fuel[measured]
     landed = outcomes == Outcome.LANDED
     counts = np.bincount(outcomes, minlength=len(Outcome))
-    sums = returns[told].sum(), seconds[landed].sum(), fuel[landed].sum(), switches[told].sum(), seconds.sum()
+    sums = returns[measured].sum(), seconds[landed].sum(), fuel[landed].sum(), switches[measured].sum(), seconds.sum()
     return np.array([*counts, *sums], dtype=float)
 
 
@@ -239,16 +239,16 @@ class LanderTask(Task[Evaluation]):
 
     def restore_env(self, env: LanderEnv, state: State) -> str:
         new = env.snapshot()
-        told, flying = state["flights"], {name: new[name] for name in _CHANGED if name != "contacts"}
-        flights = {name: rebuilt(template, told[name]) for name, template in flying.items()}
-        flights["contacts"] = _contacts(env, new["contacts"], told["contacts"])
+        saved, flying = state["flights"], {name: new[name] for name in _CHANGED if name != "contacts"}
+        flights = {name: rebuilt(template, saved[name]) for name, template in flying.items()}
+        flights["contacts"] = _contacts(env, new["contacts"], saved["contacts"])
         landers = flights["landers"]
         outside = not np.isin(landers["target"], range(len(env.ground.pads))).all()
         if outside or not np.isin(landers["outcome"], tuple(Outcome)).all() or not 0 <= flights["landings"] <= MOST:
             raise ValueError("flights are of other landers, or of none")
         env.restore(new | flights)
-        for stream, told in zip(env.streams, state["streams"], strict=True):
-            stream.bit_generator.state = told
+        for stream, generator in zip(env.streams, state["streams"], strict=True):
+            stream.bit_generator.state = generator
         return ""
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
@@ -278,12 +278,12 @@ class AnywhereTask(LanderTask):
     landers = AnywhereEnv
 
     def update_env(self, decisions: int, env: Any) -> None:
-        """Tighten the limits of a touchdown over the schedule, from those that are told to a share of them."""
+        """Tighten the limits of a touchdown over the schedule, from those that are observed to a share of them."""
         env.strictness = touchdown_limits(self.config, decisions)
 
     def restore_env(self, env: Any, state: State) -> str:
         """Let new landers go on from what `env_state` gave, at the same sites."""
-        env.settle(array_like(env.settled, state["flights"]["landers"]["settled"], "sites", finite=False))
+        env.set_sites(array_like(env.settled, state["flights"]["landers"]["settled"], "sites", finite=False))
         return super().restore_env(env, state)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
@@ -292,9 +292,9 @@ class AnywhereTask(LanderTask):
         return Evaluation.of((yield from flown(pilot, env)))
 
 
-def _contacts(env: LanderEnv, new: State, told: Any) -> State:
+def _contacts(env: LanderEnv, new: State, saved: Any) -> State:
     """Return what a snapshot remembers of contacts, from a file; raises KeyError, TypeError or ValueError."""
-    gravity, kept, world = rebuilt(new["gravity"], told["gravity"]), told["contacts"], env.world
+    gravity, kept, world = rebuilt(new["gravity"], saved["gravity"]), saved["contacts"], env.world
     if not kept:
         return {"gravity": gravity, "contacts": {}}
     count = len(kept["world"])

@@ -44,8 +44,8 @@ def flying(context: Context) -> networks.Network | None:
     if pilot is None or not pilot.chosen:
         return None
     pilot.look()
-    if (words := wrong(pilot)) != pilot.told:
-        pilot.told = words
+    if (words := wrong(pilot)) != pilot.reported:
+        pilot.reported = words
         if words:
             context.note(words)
     return networks.Network(pilot.path.name, pilot)

@@ -9,7 +9,7 @@ SEEN = np.zeros((3, 9), np.float32)
 VALUES = np.array([[0.5, 0.49, 0.1], [0.5, 0.47, 0.1], [0.1, 0.2, 0.3]], np.float32)
 
 
-def test_what_is_held_is_kept_only_where_it_is_nearly_as_good_and_that_is_told():
+def test_what_is_held_is_kept_only_where_it_is_nearly_as_good_and_that_is_said():
     decision = decide(SEEN, VALUES, np.array([1, 1, 2]), steadiness=0.02, reward_scale=0.01)
     assert decision.action.tolist() == [1, 0, 2]
     assert decision.best.tolist() == [0, 0, 2]

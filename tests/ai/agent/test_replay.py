@@ -8,7 +8,7 @@ from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 
 
 def cells(first, count):
-    """Transitions numbered from `first`, told apart by their reward."""
+    """Transitions numbered from `first`, which their reward identifies."""
     numbers = np.arange(first, first + count)
     states = np.repeat(numbers[:, None], 2, axis=1).astype(np.float32)
     return Transition(states, states + 1, numbers % 3, numbers.astype(np.float32), numbers % 2 == 0, numbers % 5 + 1)

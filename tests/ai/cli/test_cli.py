@@ -71,9 +71,9 @@ def test_what_cannot_be_done_is_said_in_a_line(capsys, tmp_path, monkeypatch, su
     ]:
         with subtests.test(arguments):
             assert main(arguments.split()) == 1
-            told = capsys.readouterr().err
-            assert message in told
-            assert "Traceback" not in told
+            stderr = capsys.readouterr().err
+            assert message in stderr
+            assert "Traceback" not in stderr
             assert not list(tmp_path.iterdir())
 
 
@@ -82,7 +82,7 @@ ENDINGS = [("SIGINT", 0), ("SIGTERM", 128 + 15), ("SIGHUP", 128 + 1)]
 
 @pytest.fixture
 def heard():
-    """Signals that end a run; those that the tests were told to ignore, as under nohup, are heard again."""
+    """Signals that end a run; those that the tests were asked to ignore, as under nohup, are heard again."""
     numbers = [getattr(signal, name) for name, _ in ENDINGS if hasattr(signal, name)]
     before = {number: signal.getsignal(number) for number in numbers}
     for number, handler in before.items():
@@ -160,9 +160,9 @@ def test_what_can_change_in_a_run_is_changed_when_it_is_resumed_and_the_rest_is_
         (["--set", "gradient_steps=0"], "gradient_steps lies"),
     ):
         assert main([*resume, *changes]) == 1
-        told = capsys.readouterr().err
-        assert named in told
-        assert "epsilon_end" not in told, "that can change"
+        stderr = capsys.readouterr().err
+        assert named in stderr
+        assert "epsilon_end" not in stderr, "that can change"
         assert before == {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
     assert main([*resume, "--set", "gradient_steps=2", "--set", "hidden=[8]", "--seed", "3", "--env", "lander"]) == 0
     agent = DeepQAgent.load(run / "last")
@@ -241,9 +241,9 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
         monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     run = tmp_path / "run"
     assert main(["train", "--decisions", "4000", "--output", str(run), "--validation", "4", *SMALL]) == 1
-    told = capsys.readouterr().err
-    assert "learning step 7" in told
-    assert {"full": "No space", "not finite": "Nothing new is kept", "best": "What was best"}[trouble] in told
+    stderr = capsys.readouterr().err
+    assert "learning step 7" in stderr
+    assert {"full": "No space", "not finite": "Nothing new is kept", "best": "What was best"}[trouble] in stderr
     assert run.exists() == (trouble == "best")
     if trouble == "best":
         last = DeepQAgent.load(run / "last").online.values

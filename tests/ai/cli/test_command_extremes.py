@@ -135,15 +135,15 @@ def refused(tmp_path, monkeypatch, capsys):
             code: Any = main(arguments)
         except SystemExit as ended:
             code = ended.code
-        told = capsys.readouterr().err
+        stderr = capsys.readouterr().err
         assert code in (1, 2)
-        assert 0 < len(told) < 1_000
-        assert told.count("\n") <= 4
-        assert told.replace("\n", "").isprintable()
-        assert "Traceback" not in told
-        assert not _PYTHONS_WORDS.search(told)
+        assert 0 < len(stderr) < 1_000
+        assert stderr.count("\n") <= 4
+        assert stderr.replace("\n", "").isprintable()
+        assert "Traceback" not in stderr
+        assert not _PYTHONS_WORDS.search(stderr)
         assert sorted(map(str, tmp_path.rglob("*"))) == before
-        return told
+        return stderr
 
     return refused
 

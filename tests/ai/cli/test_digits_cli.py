@@ -85,9 +85,9 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
     small = ["--preset", "classic", "--set", "hidden=[8]", "--set", f"held_out={held_out}", "--set", "ema_decay=0"]
     run = tmp_path / "run"
     assert main(["train-digits", *small, "--output", str(run)]) == 1
-    told = capsys.readouterr().err
-    assert "learning step 9" in told
-    assert {"": "What was best until then is", "unmeasured": "has not been measured"}[trouble] in told
+    stderr = capsys.readouterr().err
+    assert "learning step 9" in stderr
+    assert {"": "What was best until then is", "unmeasured": "has not been measured"}[trouble] in stderr
     assert run.exists()
     if not trouble:
         assert resume(DigitTraining, run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"

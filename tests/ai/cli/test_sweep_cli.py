@@ -71,14 +71,14 @@ def test_a_study_that_has_begun_keeps_its_plan(study, tmp_path, capsys):
 
 @pytest.fixture
 def evil(tmp_path, monkeypatch):
-    """A stranger's study whose environment is a module that lies beside it, and leaves a trace when it is imported."""
+    """Another's study whose environment is a module that lies beside it, and leaves a trace when it is imported."""
     (tmp_path / "evilcwd.py").write_text(f"open({str(tmp_path / 'trace')!r}, 'w').close()\n")
     monkeypatch.syspath_prepend(tmp_path)
     study = Study.create(tmp_path / "study", tiny_plan())
     file = study.folder / "study.json"
-    told = json.loads(file.read_text())
-    told["plan"]["settings"]["env"] = "evilcwd:X-v0"
-    file.write_text(json.dumps(told))
+    saved = json.loads(file.read_text())
+    saved["plan"]["settings"]["env"] = "evilcwd:X-v0"
+    file.write_text(json.dumps(saved))
     yield study.folder
     sys.modules.pop("evilcwd", None)
 
@@ -99,10 +99,10 @@ def test_a_study_starts_code_only_if_the_user_names_it_too(evil, tmp_path, capsy
 def test_what_a_study_lists_of_trials_starts_no_code_either(evil, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(cluster, "joined", None)
     file = evil / "study.json"
-    told = json.loads(file.read_text())
-    told["plan"]["settings"]["env"] = "CartPole-v1"
-    told["plan"]["space"]["env"] = {"choices": ["evilcwd:X-v0"]}
-    file.write_text(json.dumps(told))
+    saved = json.loads(file.read_text())
+    saved["plan"]["settings"]["env"] = "CartPole-v1"
+    saved["plan"]["space"]["env"] = {"choices": ["evilcwd:X-v0"]}
+    file.write_text(json.dumps(saved))
     assert "env cannot be searched" in refused(capsys, "sweep", "--study", f"{evil}/", "--resume")
     assert not (tmp_path / "trace").exists()
 
@@ -128,13 +128,13 @@ def test_an_address_where_no_cluster_answers_is_one_sentence_at_once(tmp_path, c
                       "no.such.host.invalid:1": "no cluster", f"{'x' * 70}:1": "no cluster"}  # fmt: skip
         for number, (address, said) in enumerate(addresses.items()):
             place = tmp_path / str(number)
-            told = refused(capsys, "sweep", "--study", f"{place}/", "--trials", 2, "--address", address)
-            assert said in told, address
+            printed = refused(capsys, "sweep", "--study", f"{place}/", "--trials", 2, "--address", address)
+            assert said in printed, address
             assert not place.exists(), "nothing has begun"
         thread.join()
 
 
-def test_a_study_is_told_as_a_table_as_json_and_as_a_page_that_needs_nothing_else(study, tmp_path, capsys):
+def test_a_study_is_printed_as_a_table_as_json_and_as_a_page_that_needs_nothing_else(study, tmp_path, capsys):
     command = ["--user-dir", str(tmp_path / "user"), "study", "mine"]
     assert main([*command, "--html", str(tmp_path / "page.html")]) == 0
     table = capsys.readouterr().out

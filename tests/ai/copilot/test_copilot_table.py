@@ -58,14 +58,14 @@ def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
 
 def test_the_command_prints_tables_that_follow_from_the_seed(few, monkeypatch, capsys):
     monkeypatch.setattr(measurement, "HELPS", ((ALONE, 0.0), (VALUES, 0.4)))
-    told = []
+    outputs = []
     for form in (["--json"], ["--json"], []):
         assert main.main(["copilot-table", "--episodes", "1", *form]) == 0
         printed = capsys.readouterr().out
-        told.append(json.loads(printed) if form else printed)
-    assert told[0] == told[1]
-    assert [len(told[0][name]) for name in TABLES] == [4, 4, 4]
-    assert "own pad" in told[2]
+        outputs.append(json.loads(printed) if form else printed)
+    assert outputs[0] == outputs[1]
+    assert [len(outputs[0][name]) for name in TABLES] == [4, 4, 4]
+    assert "own pad" in outputs[2]
 
 
 def test_the_command_says_what_is_wrong(capsys, tmp_path):

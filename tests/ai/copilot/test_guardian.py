@@ -235,7 +235,7 @@ def test_left_and_right_are_alike(agent):
     assert abs(counts[0] - counts[1]) < 0.1
 
 
-def test_all_six_are_told_and_what_ended_has_no_future(agent):
+def test_all_six_are_reported_and_what_ended_has_no_future(agent):
     env = flights(2)
     env.outcome[1] = Outcome.CRASHED
     futures = CoPilot(agent, GUIDE, Mode.GUARDIAN).futures(env)

@@ -26,10 +26,12 @@ def misread(data):
 
 def fixed(data, misread, keep, **options) -> Fixed:
     image, digit = misread
-    told = [each for message in fix(CLASSIC, image, digit, keep, train=data, test=data, **options) for each in message]
-    assert all(isinstance(each, FixStep) for each in told[:-1])
-    assert isinstance(told[-1], Fixed)
-    return told[-1]
+    messages = [
+        each for message in fix(CLASSIC, image, digit, keep, train=data, test=data, **options) for each in message
+    ]
+    assert all(isinstance(each, FixStep) for each in messages[:-1])
+    assert isinstance(messages[-1], Fixed)
+    return messages[-1]
 
 
 def test_a_fix_teaches_the_drawing_says_what_it_cost_and_is_kept(tmp_path, data, misread):

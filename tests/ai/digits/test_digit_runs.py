@@ -23,7 +23,7 @@ def data():
     return images[:600], labels[:600]
 
 
-def test_a_run_learns_and_tells_how_it_stands(data):
+def test_a_run_learns_and_reports_how_it_stands(data):
     training = DigitTraining(SMALL, 1, data)
     progress = [training.advance() for _ in range(training.steps)]
     assert training.done

@@ -1,4 +1,4 @@
-"""What lies on disk and what comes from strangers: read within bounds, replaced only if it is ours, lost never."""
+"""What lies on disk and what comes from others: read within bounds, replaced only if it is ours, lost never."""
 
 import errno
 import io
@@ -402,9 +402,9 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
             with subtests.test(name=name, option=option):
                 command = ["train", "--decisions", "300", "--validation", "4", option, str(place / "d"), *changes]
                 assert main(command) == 1
-                told = capsys.readouterr().err.strip()
-                assert str(place / "d") in told
-                assert "left as it is" in told or "no readable model" in told
+                stderr = capsys.readouterr().err.strip()
+                assert str(place / "d") in stderr
+                assert "left as it is" in stderr or "no readable model" in stderr
                 assert listing(place) == before
 
 
@@ -413,7 +413,7 @@ def test_what_systems_leave_in_a_folder_is_no_obstacle(run):
     save(Training(SMALL, validation_episodes=1), run, state=False)
 
 
-def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):
+def test_the_second_training_of_a_folder_is_refused(tmp_path, capsys):
     command = ["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]
     with take_folder(tmp_path / "run"):
         holder = "from ai.files import take_folder; import sys; take_folder(sys.argv[1])"

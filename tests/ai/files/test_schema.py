@@ -89,7 +89,7 @@ def test_fields_that_are_unknown_are_passed_over_or_refused():
         read_as(Cart, [])
 
 
-def test_sound_fields_are_told_from_the_others():
+def test_sound_fields_are_separated_from_the_others():
     right, problems = sound_fields(Cart, {"name": "hay", "worn": 2, "locked": True, "bell": 1})
     assert right == {"name": "hay", "locked": True}
     assert [problem.partition(" ")[0] for problem in problems] == ["wheels", "worn:"]

@@ -51,9 +51,9 @@ def content_of(flight):
     return json.loads(line), inputs
 
 
-def remade(told, inputs):
+def remade(values, inputs):
     """The code of a start and inputs."""
-    return sealed(deflated(json.dumps(told).encode() + b"\n" + inputs))
+    return sealed(deflated(json.dumps(values).encode() + b"\n" + inputs))
 
 
 def refusal(text):
@@ -169,7 +169,7 @@ def test_a_claim_and_a_name_out_of_all_bounds_have_a_code_too():
 
 
 def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
-    told, inputs = content_of(shared([0, 3]))
+    values, inputs = content_of(shared([0, 3]))
     sound = {"leg": [MOST_LEGS, TANK, True], "easing": {"wider_pads": True, "untimed": True}, "area": len(AREAS) - 1}
     wrong = {
         "seed": (-1, 10**40 + 1, "x", 1.5), "pads": (2, "1"), "spawn": ("nowhere",), "mission": ("nowhere", 3),
@@ -178,25 +178,25 @@ def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
         "outcome": ("WON",), "points": (-1, 10**7), "end": ([0, 0], [0, 0, 10**11]), "course": ("elsewhere",),
         "barred": ("x" * 41,), "more": (1,),
     }  # fmt: skip
-    assert [refusal(remade(told | {name: value}, inputs)) for name, value in sound.items()] == ["", "", ""]
+    assert [refusal(remade(values | {name: value}, inputs)) for name, value in sound.items()] == ["", "", ""]
     on_a_leg: dict[str, Any] = {"pads": 3, "mission": "fall", "gravity": [[0, 0.7]]}
     changes: list[dict[str, Any]] = [{name: value} for name, values in wrong.items() for value in values]
     changes += [{"leg": [2, 1.0, False], name: value} for name, value in on_a_leg.items()]
     for change in changes:
         with subtests.test(change=change):
-            assert refusal(remade(told | change, inputs)) == "nonsense"
+            assert refusal(remade(values | change, inputs)) == "nonsense"
 
 
 def test_a_code_whose_content_has_no_end_is_refused():
-    told, inputs = content_of(shared([0, 3, 4] * 20))
-    content = deflated(json.dumps(told).encode() + b"\n" + inputs)
+    values, inputs = content_of(shared([0, 3, 4] * 20))
+    content = deflated(json.dumps(values).encode() + b"\n" + inputs)
     assert refusal(sealed(content)) == ""
     for left_out in range(1, 9):
         assert refusal(sealed(content[:-left_out])) == "nonsense"
 
 
 def test_sticks_move_within_their_ways_and_in_every_step(subtests):
-    told, _ = content_of(shared([0, 3]))
+    values, _ = content_of(shared([0, 3]))
     for moves, kind in [
         (bytes([STEPS, 0, STEPS, 0]), ""),
         (bytes([STEPS, 0, 256 - STEPS, 2 * STEPS]), ""),
@@ -208,15 +208,15 @@ def test_sticks_move_within_their_ways_and_in_every_step(subtests):
         (b"", "nonsense"),
     ]:
         with subtests.test(moves=moves):
-            assert refusal(remade(told, bytes([0, 3, 255]) + moves)) == kind
+            assert refusal(remade(values, bytes([0, 3, 255]) + moves)) == kind
 
 
 @settings(max_examples=200, deadline=None)
 @given(flights(), st.data())
 def test_a_flight_changed_on_purpose_is_a_flight_or_is_refused(flight, data):
     """A byte of its deflated content, of what that unfolds to, or any bytes at all: the checksum is right."""
-    told, inputs = content_of(flight)
-    content = bytearray(json.dumps(told).encode() + b"\n" + inputs)
+    values, inputs = content_of(flight)
+    content = bytearray(json.dumps(values).encode() + b"\n" + inputs)
     packed = data.draw(st.booleans())
     changed = bytearray(deflated(bytes(content))) if packed else content
     if data.draw(st.booleans()):
@@ -232,9 +232,9 @@ def test_a_flight_changed_on_purpose_is_a_flight_or_is_refused(flight, data):
 
 
 def test_a_code_that_unfolds_to_more_than_the_longest_flight_costs_no_more():
-    told, _ = content_of(shared([0, 3]))
+    values, _ = content_of(shared([0, 3]))
     for times, kind in ((LONGEST // 21, ""), (LONGEST // 21 + 1, "nonsense"), (10**7, "nonsense")):
-        code = remade(told, bytes([240]) * times)
+        code = remade(values, bytes([240]) * times)
         tracemalloc.start()
         assert refusal(code) == kind
         assert tracemalloc.get_traced_memory()[1] < 8_000_000

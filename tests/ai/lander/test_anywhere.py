@@ -34,7 +34,7 @@ def alone(site):
 
 def test_each_lander_of_a_batch_flies_as_it_would_alone():
     env = AnywhereEnv(len(MIXED), 0, frame_skip=1)
-    env.settle(MIXED)
+    env.set_sites(MIXED)
     put(env, START)
     single, together, apart = [alone(site) for site in MIXED], [], []
     while Outcome.FLYING in env.outcome:
@@ -62,7 +62,7 @@ def test_a_flight_and_its_site_do_not_depend_on_how_many_fly_beside_or_begin_ane
 
 def test_limits_of_a_touch_are_those_of_each_site():
     env = AnywhereEnv(2, 0, frame_skip=1)
-    env.settle([Site(touch_speed=3.0, slide_speed=1.2), Site()])
+    env.set_sites([Site(touch_speed=3.0, slide_speed=1.2), Site()])
     fly(put(env, (12.0, PARAMS.ground + PARAMS.stand + 0.01, 1.6, -0.3)), steps=30)
     assert env.outcome.tolist() == [Outcome.CRASHED] * 2
     assert env.intact.tolist() == [False, True]
@@ -80,7 +80,7 @@ def test_sites_are_of_the_kinds_asked_for():
             AnywhereEnv(1, 0, sites=wrong)
 
 
-def test_stricter_limits_hold_and_are_not_told():
+def test_stricter_limits_hold_and_are_not_observed():
     env = AnywhereEnv(2, 0, "fixed", frame_skip=1, sites=("moon",))
     before = put(env, (0.0, STAND + 0.01, 0, -0.75 * LIMITS.touch_speed)).snapshot()
     for strictness, outcome in ((1.0, Outcome.FLYING), (0.5, Outcome.CRASHED)):

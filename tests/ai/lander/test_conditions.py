@@ -96,16 +96,16 @@ def test_on_the_calm_moon_only_the_clock_runs():
     assert later.pop("time left") == pytest.approx(12.0, abs=1e-5)
     assert seen(LanderEnv(1, 0))["time left"] == pytest.approx(20.0)  # more is not seen
     assert later == at_first
-    told = {"gravity": PARAMS.gravity, "thrust": PARAMS.main_thrust / PARAMS.mass, "pad width": 6.0,
+    expected = {"gravity": PARAMS.gravity, "thrust": PARAMS.main_thrust / PARAMS.mass, "pad width": 6.0,
             "touch speed": LIMITS.touch_speed, "wind": 0.0, "pad velocity": 0.0, "back in": 0.0}  # fmt: skip
-    assert {name: later[name] for name in told} == pytest.approx(told)
+    assert {name: later[name] for name in expected} == pytest.approx(expected)
 
 
 def test_wind_engine_fuel_and_pad_are_seen_and_announced(subtests):
     engine, wind = ("main engine", "dead in", "back in"), ("wind", "wind soon", "mean wind")
     shift, velocity = HARD.shift(np.array([2.99, 3.01]))
     soon = HARD.push(np.arange(1.0, 3.0, 0.001)).mean()
-    for seconds, action, names, told in [
+    for seconds, action, names, expected in [
         (1.0, 0, wind, [0.5, soon, 0.2]),
         (0.5, 0, engine, [1.0, 1.5, 0.0]),
         (3.0, 0, engine, [0.0, 0.0, 1.0]),
@@ -116,7 +116,7 @@ def test_wind_engine_fuel_and_pad_are_seen_and_announced(subtests):
     ]:
         with subtests.test(seconds=seconds, action=action, names=names):
             now = seen(falling(HARD, seconds, action))
-            assert [now[name] for name in names] == pytest.approx(told, abs=1e-3)
+            assert [now[name] for name in names] == pytest.approx(expected, abs=1e-3)
     assert seen(falling(replace(HARD, tank=0.5), 1.0, 3))["fuel left"] == 0.0
     env = falling(Conditions(), 0.5)
     env.gravity = 3.0

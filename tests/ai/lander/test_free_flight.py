@@ -50,7 +50,7 @@ def begun(case, slots, rng):
     many.place(np.ones(slots, dtype=bool), start)
     for slot, one in enumerate(alone):
         if isinstance(many, AnywhereEnv):
-            one.settle(many.settled[[slot]])
+            one.set_sites(many.settled[[slot]])
         one.target = many.target[[slot]]
         one.place(np.ones(1, dtype=bool), start[[slot]])
     return many, alone

@@ -17,7 +17,7 @@ def standing(*places):
     return placed(*[(x, y + PARAMS.stand) for x, y in places], ground=THREE)
 
 
-def test_any_pad_will_do_and_the_result_tells_which_but_hills_and_flanks_are_no_place_to_land():
+def test_any_pad_will_do_and_the_result_says_which_but_hills_and_flanks_are_no_place_to_land():
     env = standing((-9, 2.0), (0, 1.6), (9, 2.5), (4.5, 2.3), (14, 1.1))
     assert env.landed_on.tolist() == [-1] * 5
     fly(env, steps=90)

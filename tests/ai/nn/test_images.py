@@ -152,7 +152,7 @@ def digits_network(seed=0, dropout=0.2):
     )
 
 
-def test_tells_bars_wherever_they_are():
+def test_recognises_bars_wherever_they_are():
     rng = np.random.default_rng(3)
     kinds, places = rng.integers(0, 3, 300), rng.integers(1, 7, 300)
     x = np.zeros((300, 8, 8, 1))

@@ -242,7 +242,7 @@ def test_costs_have_the_textbook_values():
         assert cost.derivative(large, target).dtype == softmax(large).dtype == dtype
 
 
-def test_dueling_streams_are_told_apart():
+def test_dueling_streams_are_kept_apart():
     layer = DuelingLayer(INPUTS, OUTPUTS)
     x = examples_of(layer).astype(np.float32)
     streams = x @ layer.weights + layer.bias

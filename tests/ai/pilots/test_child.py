@@ -39,7 +39,7 @@ WRONG = {
 }
 
 
-def told(source: str, kind: str = ACT, question: bytes = OBSERVATIONS.tobytes()) -> str:
+def problem_with(source: str, kind: str = ACT, question: bytes = OBSERVATIONS.tobytes()) -> str:
     try:
         load(kind, PATH, source)[0](question)
     except BaseException as error:
@@ -47,15 +47,15 @@ def told(source: str, kind: str = ACT, question: bytes = OBSERVATIONS.tobytes())
     return ""
 
 
-def test_what_is_wrong_with_a_file_is_told_with_its_line(subtests):
+def test_what_is_wrong_with_a_file_is_reported_with_its_line(subtests):
     for source, words in WRONG.items():
         with subtests.test(source):
-            assert told(source).startswith(words)
+            assert problem_with(source).startswith(words)
 
 
 def test_what_a_file_raises_may_be_of_any_length_and_kind():
-    assert len(told("raise ValueError('x\\n' * 10_000)")) < 400
-    assert told("class Odd(Exception):\n    def __str__(self): return 'a\\nb'\nraise Odd") == "3 Odd: a b"
+    assert len(problem_with("raise ValueError('x\\n' * 10_000)")) < 400
+    assert problem_with("class Odd(Exception):\n    def __str__(self): return 'a\\nb'\nraise Odd") == "3 Odd: a b"
 
 
 def test_act_and_act_many_answer_row_by_row_and_may_change_what_they_get():
@@ -81,14 +81,14 @@ def test_the_template_of_a_pay_is_the_usual_pay():
     assert len(REWARDS) == 9
 
 
-def test_a_pay_that_is_none_is_told(subtests):
+def test_a_pay_that_is_none_is_reported(subtests):
     question = np.zeros((18, 2)).tobytes()
     for returned in ("None", "1.0", "after.tilt[:1]", "'ab'"):
         with subtests.test(returned):
-            assert "pay must return 2 finite numbers" in told(
+            assert "pay must return 2 finite numbers" in problem_with(
                 f"def pay(before, action, after): return {returned}", PAY, question
             )
-    assert "finite" in told("def pay(b, a, after): return after.tilt + float('nan')", PAY, question)
+    assert "finite" in problem_with("def pay(b, a, after): return after.tilt + float('nan')", PAY, question)
 
 
 def test_blocks_are_bounded():

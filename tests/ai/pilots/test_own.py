@@ -155,7 +155,7 @@ def test_one_that_never_begins_is_ended(pilot: OwnPilot):
     assert running() == ["1"]
 
 
-def test_one_that_never_answers_first_is_ended_and_told_at_once(pilot: OwnPilot):
+def test_one_that_never_answers_first_is_ended_and_reported_at_once(pilot: OwnPilot):
     assert flown(pilot) == 1
     save(pilot, "late")
     assert flown(pilot, 5) == 1
@@ -164,7 +164,7 @@ def test_one_that_never_answers_first_is_ended_and_told_at_once(pilot: OwnPilot)
     assert running() == ["1"]
 
 
-def test_a_file_that_is_gone_or_is_none_is_told(pilot: OwnPilot):
+def test_a_file_that_is_gone_or_is_none_is_reported(pilot: OwnPilot):
     assert flown(pilot) == 1
     pilot.path.unlink()
     assert flown(pilot) == 1
@@ -209,7 +209,7 @@ def test_a_real_file_flies_as_it_is_saved(tmp_path: Path):
     pilot.close()
 
 
-def test_a_real_loop_that_was_saved_in_flight_is_told_with_its_line_and_the_last_good_one_flies_on(
+def test_a_real_loop_that_was_saved_in_flight_is_reported_with_its_line_and_the_last_good_one_flies_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(own, "FIRST", 0.1)

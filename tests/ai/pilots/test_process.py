@@ -62,7 +62,7 @@ def test_a_file_that_raises_goes_on_answering(started):
 @pytest.mark.parametrize(
     "source", ["import os; os._exit(0)", "import os, signal; os.kill(os.getpid(), signal.SIGTERM)"]
 )
-def test_a_file_that_ends_its_process_is_told(started, source: str):
+def test_a_file_that_ends_its_process_is_reported(started, source: str):
     process = started(source)
     with pytest.raises(PilotError, match="ended"):
         process.ready(LONG)

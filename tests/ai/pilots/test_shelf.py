@@ -43,12 +43,12 @@ def test_a_full_disk_leaves_no_half_of_a_file(tmp_path: Path, monkeypatch: pytes
 def test_measurements_are_kept_in_their_order_whatever_else_is_in_the_file(tmp_path: Path):
     files = Shelf(tmp_path)
     assert files.measured() == []
-    told = [Measured("pilot", 0.25, 7.5, 3.0, 1e9, (1, 2, 3, 4, 5, 6, 7)), Measured("pilot", 0.9, 8.0, 2.5, 1e9 + 1)]
-    files.keep(told[0])
+    results = [Measured("pilot", 0.25, 7.5, 3.0, 1e9, (1, 2, 3, 4, 5, 6, 7)), Measured("pilot", 0.9, 8.0, 2.5, 1e9 + 1)]
+    files.keep(results[0])
     with (tmp_path / "pilots" / "measured.jsonl").open("a") as file:
         file.write('{"name": 3}\nnonsense\n{"name": "x", "landed": 7}\n')
-    files.keep(told[1])
-    assert files.measured() == told
+    files.keep(results[1])
+    assert files.measured() == results
 
 
 def test_a_measurement_is_stale_once_the_file_was_saved_again(tmp_path: Path):
@@ -60,7 +60,7 @@ def test_a_measurement_is_stale_once_the_file_was_saved_again(tmp_path: Path):
     assert not Measured("pilot", 0.5, when=saved - 1).stale(path)
 
 
-def test_an_editor_is_opened_on_the_file_and_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_editor_is_opened_on_the_file_and_none_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     called = []
 
     class Opened:

@@ -226,7 +226,7 @@ with joined(None, 1):
     from ai.sweep.driver import Driver
     driver = Driver(Study.load(Path({str(folder)!r})), 1, print, lambda: None)
     driver.checkpoint = 0.5
-    driver._told = lambda: print("kept" * any(job.runs for job in driver.jobs.values()), flush=True)
+    driver._report = lambda: print("kept" * any(job.runs for job in driver.jobs.values()), flush=True)
     driver.run([])
 """
     command = [sys.executable, "-c", program]
@@ -235,7 +235,7 @@ with joined(None, 1):
         (worker,) = training_workers(driver.pid)
         os.kill(worker, signal.SIGKILL)
         out = ended(driver)
-    assert "raylet" not in out, "Ray tells it elsewhere than among the results"
+    assert "raylet" not in out, "Ray prints it elsewhere than among the results"
     (trial,) = Study.load(folder).trials.values()
     assert trial.restarts == 1
     assert [point.at for point in trial.seeds[0].curve] == list(range(1000, 17_000, 1000))

@@ -69,17 +69,17 @@ def test_a_trial_that_was_kept_or_is_damaged_is_not_run_again(study):
 
 def test_what_a_file_says_of_trials_under_way_is_checked(study):
     file = study.folder / "study.json"
-    told = json.loads(file.read_text())
-    sound = told["under_way"][0]
+    saved = json.loads(file.read_text())
+    sound = saved["under_way"][0]
     for name, change in {
         "another knob": {"params": sound["params"] | {"env": "evil:X-v0"}},
         "a knob less": {"params": {"tau": 0.1}},
         "out of the range": {"params": sound["params"] | {"tau": 5.0}},
         "a text": {"params": sound["params"] | {"tau": "0.1"}},
     }.items():
-        file.write_text(json.dumps(told | {"under_way": [sound | change]}))
+        file.write_text(json.dumps(saved | {"under_way": [sound | change]}))
         assert Study.load(study.folder).under_way == {}, name
-    file.write_text(json.dumps(told | {"under_way": [sound | {"number": -1}]}))
+    file.write_text(json.dumps(saved | {"under_way": [sound | {"number": -1}]}))
     with pytest.raises(ValueError, match="number"):
         Study.load(study.folder)
 

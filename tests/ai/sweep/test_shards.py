@@ -34,9 +34,9 @@ def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch
 @pytest.mark.slow
 def test_processes_give_what_this_one_gives_in_the_same_order(monkeypatch):
     monkeypatch.setattr(module, "SHARD", 2)
-    parts, told = shards(MODERN, 6, 3, "random"), []
-    assert np.array_equal(results(parts, 2, lambda: told.append(1)), results(parts))
-    assert len(told) == 3
+    parts, reports = shards(MODERN, 6, 3, "random"), []
+    assert np.array_equal(results(parts, 2, lambda: reports.append(1)), results(parts))
+    assert len(reports) == 3
 
 
 def test_sums_of_flights_give_their_means():
@@ -45,11 +45,11 @@ def test_sums_of_flights_give_their_means():
     assert Evaluation.of(np.array([0, 0, 2, 0, 0, 0.0, 0.0, 0.0, 1, 2.0])).mean_time is None
 
 
-def test_evaluate_tells_an_interval_around_the_share(capsys):
+def test_evaluate_prints_an_interval_around_the_share(capsys):
     assert main(["evaluate", "--model", str(MODERN), "--episodes", "30", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    low, high = told["success_interval"]
-    assert low < told["success"] <= high
+    values = json.loads(capsys.readouterr().out)
+    low, high = values["success_interval"]
+    assert low < values["success"] <= high
     assert main(["evaluate", "--model", str(MODERN), "--episodes", "30"]) == 0
     assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
 

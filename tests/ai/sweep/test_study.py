@@ -15,7 +15,7 @@ from ai.digits.training import DigitTraining
 from ai.files import read_arrays, read_as
 from ai.sweep import study as study_module
 from ai.sweep.plan import Plan, knob_space
-from ai.sweep.report import told
+from ai.sweep.report import table
 from ai.sweep.study import Asked, FinishedTrial, Study, StudyError, write_files
 from ai.sweep.trial import Trial
 from ai.training.config import PRESETS
@@ -110,7 +110,7 @@ def test_a_damaged_trial_is_named_and_the_others_are_read(study, content):
     left = Study.load(study.folder)
     assert left.damaged == [0]
     assert sorted(left.trials) == [1]
-    assert "cannot be read: 0" in told(left)
+    assert "cannot be read: 0" in table(left)
 
 
 @pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff\xfe", b"[" * 5000])
@@ -192,8 +192,8 @@ def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_
 
 
 def test_a_study_of_before_is_refused_by_name(study):
-    told_ = json.loads((study.folder / "study.json").read_text()) | {"version": 1}
-    (study.folder / "study.json").write_text(json.dumps(told_))
+    saved = json.loads((study.folder / "study.json").read_text()) | {"version": 1}
+    (study.folder / "study.json").write_text(json.dumps(saved))
     with pytest.raises(StudyError, match="version 1"):
         Study.load(study.folder)
 
@@ -211,7 +211,7 @@ def test_a_trial_of_other_seeds_or_with_a_value_out_of_nowhere_is_damaged(study)
         file.write_text(json.dumps(sound | change))
         left = Study.load(study.folder)
         assert left.damaged == [0], name
-        assert "cannot be read: 0" in told(left), name
+        assert "cannot be read: 0" in table(left), name
 
 
 def test_the_runs_of_a_trial_are_sent_without_anything_that_is_no_run(study, tmp_path):

@@ -58,7 +58,7 @@ def changed(value, path, new):
     return copy
 
 
-def told(folder, capsys, *options):
+def printed(folder, capsys, *options):
     """Return what the command prints, once it has ended as it should."""
     code = main(["study", str(folder), "--html", str(folder.parent / "page.html"), *options])
     out, err = capsys.readouterr()
@@ -80,7 +80,7 @@ def test_study_bears_any_value_in_any_place(folders, capsys, data):
     new = data.draw(st.sampled_from([*NASTY, GONE]) | st.floats() | st.integers() | st.text())
     try:
         (folder / name).write_text(json.dumps(changed(sound(folder, name), path, new)))
-        told(folder, capsys, *data.draw(st.sampled_from([(), ("--json",)])))
+        printed(folder, capsys, *data.draw(st.sampled_from([(), ("--json",)])))
     finally:
         (folder / name).write_text(json.dumps(sound(folder, name)))
 
@@ -100,7 +100,7 @@ def test_study_bears_what_has_broken_it(folders, capsys):
                     name = f"trials/{number:04}/trial.json"
                     (folder / name).write_text(json.dumps(changed(sound(folder, name), path, new)))
                     if number in (0, 8):  # in one trial, in all
-                        said = told(folder, capsys)
+                        said = printed(folder, capsys)
                         assert "nan" not in (folder.parent / "page.html").read_text(), (named, number)
                         assert len(max(said.splitlines(), key=len)) < 300, (named, number)
             finally:
@@ -109,7 +109,7 @@ def test_study_bears_what_has_broken_it(folders, capsys):
                     (folder / name).write_text(json.dumps(sound(folder, name)))
 
 
-def test_settings_that_make_no_sense_are_told(folders, capsys):
+def test_settings_that_make_no_sense_are_reported(folders, capsys):
     folder, name = folders[0], "trials/0003/trial.json"
     nothing = {"value": None, "seeds": [], "problem": "too many\x1b[2J layers"}
     try:

@@ -24,22 +24,22 @@ def test_what_a_mirrored_lander_sees_is_the_mirror_image_of_what_it_sees():
     mirrored = site._replace(wind=-0.2, gust=-0.3, swing=-2.0)
     env = AnywhereEnv(2, 0, frame_skip=4)
     env.reset()
-    env.settle([site, mirrored])
+    env.set_sites([site, mirrored])
     env.place(np.ones(2, bool), np.array([[3.0, 14, 0.5, -1, 0.2, 0.1], [-3.0, 14, -0.5, -1, -0.2, -0.1]]))
     for action in (3, 4, 1, 0, 5, 5, 3, 0) * 3:
         result = env.step(np.array([action, ANYWHERE_SYMMETRY.actions[action]]))
         assert result.observation[1] == pytest.approx(ANYWHERE_SYMMETRY.mirrored(result.observation[0]), abs=1e-5)
 
 
-def test_touchdown_limits_tighten_and_what_is_told_of_them_does_not():
+def test_touchdown_limits_tighten_and_what_is_observed_of_them_does_not():
     task = task_of(SMALL)
     assert isinstance(task, AnywhereTask)
     env = task.make_env(np.random.default_rng(0))
     task.update_env(SMALL.schedule_decisions, env)
-    told = env.reset()[:, NUM_FEATURES:] / SURROUNDINGS_SCALE
+    observed = env.reset()[:, NUM_FEATURES:] / SURROUNDINGS_SCALE
     share = SMALL.final_touchdown_limits
     assert env.strictness == share < 1
-    assert env.limits.touch_speed == pytest.approx(told[:, SURROUNDINGS.index("touch speed")])
+    assert env.limits.touch_speed == pytest.approx(observed[:, SURROUNDINGS.index("touch speed")])
 
 
 def test_a_network_is_measured_at_every_kind_of_site():

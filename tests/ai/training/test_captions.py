@@ -80,11 +80,11 @@ def seen(name: str) -> dict[str, list[str]]:
         hint = adviser.advise(run.history, run.config, run.dead_share, run.clipped_share)
         if number % EACH:
             continue
-        for chart, told in captions(RecentCurves(run.history, run.config), hint.name if hint else "").items():
-            praises = any(rule.praises for rule in CAPTION_RULES[chart] if rule.name == told.name)
-            assert not (hint and chart in ABOUT[hint.name] and praises), (name, hint, chart, told)
-            if found[chart][-1:] != [told.name]:
-                found[chart].append(told.name)
+        for chart, shown in captions(RecentCurves(run.history, run.config), hint.name if hint else "").items():
+            praises = any(rule.praises for rule in CAPTION_RULES[chart] if rule.name == shown.name)
+            assert not (hint and chart in ABOUT[hint.name] and praises), (name, hint, chart, shown)
+            if found[chart][-1:] != [shown.name]:
+                found[chart].append(shown.name)
     return found
 
 

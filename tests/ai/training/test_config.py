@@ -8,7 +8,7 @@ from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 
 
-def test_every_setting_tells_a_screen_how_to_show_it():
+def test_every_setting_says_to_a_screen_how_to_show_it():
     for item in fields(Config):
         described = item.metadata
         assert described["help"].endswith(".")

@@ -92,7 +92,7 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     next(lonely)
     next(led)
     answer = led.send(("teach", path))
-    assert [(told.name, told.after) for told in answer if isinstance(told, SettingChange)] == [
+    assert [(message.name, message.after) for message in answer if isinstance(message, SettingChange)] == [
         ("success_pass", True),
         (TAUGHT, len(landings)),
     ]
@@ -100,7 +100,7 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     assert not insights[0][-1:] or not insights[0][-1].gradients.any()  # still warming up
     assert insights[1][-1].gradients.any()
     write(path, [*landings, replace(landings[0], begins=30)])
-    assert [told.after for told in led.send(("teach", path)) if isinstance(told, SettingChange)] == [
+    assert [message.after for message in led.send(("teach", path)) if isinstance(message, SettingChange)] == [
         1
     ]  # only the new one
     lonely.close()

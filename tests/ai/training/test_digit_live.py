@@ -31,18 +31,18 @@ def every_step(monkeypatch):
     monkeypatch.setattr(digit_session, "POINT_SECONDS", 0.0)
 
 
-def kinds(told, kind):
-    return [each for each in told if isinstance(each, kind)]
+def kinds(messages, kind):
+    return [each for each in messages if isinstance(each, kind)]
 
 
-def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
-    told = [each for turn in DigitSession.live(SMALL, 4, data=data) for each in turn]
-    assert told[0] == RunStarted(SMALL, 4, 0, "", 30)
-    points, scores = kinds(told, DigitPoint), kinds(told, Validation)
+def test_a_run_reports_how_it_begins_how_it_stands_and_what_it_misreads(data):
+    messages = [each for turn in DigitSession.live(SMALL, 4, data=data) for each in turn]
+    assert messages[0] == RunStarted(SMALL, 4, 0, "", 30)
+    points, scores = kinds(messages, DigitPoint), kinds(messages, Validation)
     assert points[0].step == 1
     assert [one.seconds for one in points] == sorted(one.seconds for one in points)
     assert scores[-1].success > scores[0].success
-    confusion = kinds(told, Confusion)[-1]
+    confusion = kinds(messages, Confusion)[-1]
     assert confusion.table.sum() == 200
     assert confusion.table.trace() / 200 == scores[-1].success
     assert len(confusion.images) == len(confusion.cells) > 0
@@ -78,15 +78,15 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     run = DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(8):
         next(run)
-    told = run.send(("finish",)) + next(run)
-    told += run.send(("save", tmp_path / "asked meanwhile"))
+    messages = run.send(("finish",)) + next(run)
+    messages += run.send(("save", tmp_path / "asked meanwhile"))
     for turn in run:
-        told += turn
-    saved, kept = kinds(told, Saved)
+        messages += turn
+    saved, kept = kinds(messages, Saved)
     assert (saved.folder, saved.problem) == (tmp_path / "asked meanwhile", "")
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.1
-    assert not kinds(told, DigitPoint)
+    assert not kinds(messages, DigitPoint)
     assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
 
 
@@ -102,9 +102,9 @@ def test_live_knobs_turn_and_others_are_refused(data):
 
 
 def test_without_images_held_out_there_is_no_confusion(data):
-    told = [each for turn in DigitSession.live(SMALL.changed(held_out=0, epochs=1), data=data) for each in turn]
-    assert not kinds(told, Confusion)
-    assert kinds(told, DigitPoint)
+    messages = [each for turn in DigitSession.live(SMALL.changed(held_out=0, epochs=1), data=data) for each in turn]
+    assert not kinds(messages, Confusion)
+    assert kinds(messages, DigitPoint)
 
 
 def test_numbers_that_run_away_end_the_run_with_a_reason(data, tmp_path):
@@ -120,12 +120,12 @@ RUINED = SMALL.changed(epochs=40, learning_rate=0.02, augmentation=0.0)
 
 
 def ruin(run):
-    """Let a run learn for some epochs, with far too long steps from then on; return what it told."""
-    told = [each for _ in range(160) for each in next(run)]
-    told += run.send(("change", "learning_rate", 1.0)) + run.send(("change", "final_learning_rate", 1.0))
-    told += [each for _ in range(40) for each in next(run)]
-    told += run.send(("change", "learning_rate", 0.02)) + run.send(("change", "final_learning_rate", 1e-6))
-    return told + [each for _ in range(20) for each in next(run)]
+    """Let a run learn for some epochs, with far too long steps from then on; return its messages."""
+    messages = [each for _ in range(160) for each in next(run)]
+    messages += run.send(("change", "learning_rate", 1.0)) + run.send(("change", "final_learning_rate", 1.0))
+    messages += [each for _ in range(40) for each in next(run)]
+    messages += run.send(("change", "learning_rate", 0.02)) + run.send(("change", "final_learning_rate", 1e-6))
+    return messages + [each for _ in range(20) for each in next(run)]
 
 
 def test_a_ruined_network_can_go_back_to_its_best(data):
@@ -134,41 +134,41 @@ def test_a_ruined_network_can_go_back_to_its_best(data):
     training = getgeneratorlocals(run)["session"].training
     ticks = count()
     training.clock = lambda: float(next(ticks))  # it is measured for a share of the time, whatever else runs here
-    told = ruin(run)
-    assert [each.after for each in kinds(told, SettingChange)] == [1.0, 1.0, 0.02, 1e-6]
-    scores = [each.success for each in kinds(told, Validation)]
+    messages = ruin(run)
+    assert [each.after for each in kinds(messages, SettingChange)] == [1.0, 1.0, 0.02, 1e-6]
+    scores = [each.success for each in kinds(messages, Validation)]
     best = max(scores)
     assert scores[-1] < best - 0.2, "rate to 1 and back leaves a ruin"
     (went,) = run.send(("restore_best",))
     assert (went.name, went.after) == (REVERTED, best)
     table = confusion(training.current(), training.held_images, training.held_labels)
     assert table.trace() / table.sum() == best
-    told = next(turn for _ in range(400) if kinds(turn := next(run), Validation))
-    assert kinds(told, Validation)[-1].success > best - 0.1, "and it learns on from there"
+    messages = next(turn for _ in range(400) if kinds(turn := next(run), Validation))
+    assert kinds(messages, Validation)[-1].success > best - 0.1, "and it learns on from there"
 
 
 def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     run = DigitSession.live(RUINED, 4, keep=tmp_path / "run", data=data)
     ruin(run)
-    told = run.send(("finish",))
+    messages = run.send(("finish",))
     for turn in run:
-        told += turn
-    (kept,) = kinds(told, Saved)
+        messages += turn
+    (kept,) = kinds(messages, Saved)
     training = resume(DigitTraining, tmp_path / "run", data=data)
-    shown = kinds(told, Confusion)[-1].table
+    shown = kinds(messages, Confusion)[-1].table
     best = DigitClassifier.load(tmp_path / "run")
     assert np.array_equal(shown, confusion(best, training.held_images, training.held_labels))
     assert shown.trace() / shown.sum() == training.best
     assert training.best is not None
-    assert kinds(told, Validation)[-1].success < training.best - 0.2, "the curve ends with the last one"
+    assert kinds(messages, Validation)[-1].success < training.best - 0.2, "the curve ends with the last one"
     assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
 
 
-def test_the_filters_of_the_run_are_told_from_its_first_moment_on(data):
+def test_the_filters_of_the_run_are_reported_from_its_first_moment_on(data):
     for filters in ((3,), ()):
         config = SMALL.changed(convolutions=True, filters=filters) if filters else SMALL
-        told = [each for turn in DigitSession.live(config, 4, data=data) for each in turn]
-        moments, plain = kinds(told, FilterMoment), DigitTraining(config, 4, data)
+        messages = [each for turn in DigitSession.live(config, 4, data=data) for each in turn]
+        moments, plain = kinds(messages, FilterMoment), DigitTraining(config, 4, data)
         assert (moments[0].step, moments[0].seconds) == (0, 0.0)
         for moment in moments:
             while plain.step < moment.step:

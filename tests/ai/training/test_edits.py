@@ -127,12 +127,12 @@ def test_a_weight_of_a_dueling_layer_is_refused_with_the_reason() -> None:
     editor.apply(Edit(1, 0, 0, 0.0))
 
 
-def told_of(told: tuple[object, ...], kind: type) -> list[object]:
-    return [message for message in told if isinstance(message, kind)]
+def of_kind(messages: tuple[object, ...], kind: type) -> list[object]:
+    return [message for message in messages if isinstance(message, kind)]
 
 
-def state(told: tuple[object, ...]) -> bytes:
-    [state] = told_of(told, NetworkState)
+def state(messages: tuple[object, ...]) -> bytes:
+    [state] = of_kind(messages, NetworkState)
     return state.values.tobytes()  # type: ignore[attr-defined]
 
 
@@ -148,21 +148,21 @@ def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> No
     for _ in range(60):
         next(run)
     before = state(run.send(("undo",)))  # there is nothing to undo: it only says how things stand
-    told = run.send(("edit", Edit(1, 3)))
-    assert not weights_of(LANDERS, state(told))[1][3].any()
-    assert told_of(told, NetworkEdits) == [NetworkEdits(((1, 3, None),), 1, True, True)]
-    [change] = told_of(told, SettingChange)
+    messages = run.send(("edit", Edit(1, 3)))
+    assert not weights_of(LANDERS, state(messages))[1][3].any()
+    assert of_kind(messages, NetworkEdits) == [NetworkEdits(((1, 3, None),), 1, True, True)]
+    [change] = of_kind(messages, SettingChange)
     assert isinstance(change, SettingChange)
     assert (change.name, change.before, change.after) == (EDITED, 0, 1)
-    edited = state(told)
+    edited = state(messages)
     flown = [message for _ in range(200) for message in next(run)]
     assert {state.values.tobytes() for state in flown if isinstance(state, NetworkState)} <= {edited}
     points = [message for message in flown if isinstance(message, Point)]
     assert points
     assert all(np.isnan(point.loss) for point in points)
-    told = run.send(("undo", True))
-    assert state(told) == before
-    assert told_of(told, NetworkEdits) == [NetworkEdits()]
+    messages = run.send(("undo", True))
+    assert state(messages) == before
+    assert of_kind(messages, NetworkEdits) == [NetworkEdits()]
     for _ in range(10):
         next(run)
     assert state(run.send(("undo",))) != before, "it learns again"
@@ -175,7 +175,7 @@ def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
         next(run)
     before = state(run.send(("undo",)))
     edited = state(run.send(("edit", Edit(0, 1, 2, 3.0))))
-    [edits] = told_of(run.send(("learn_on",)), NetworkEdits)
+    [edits] = of_kind(run.send(("learn_on",)), NetworkEdits)
     assert edits == NetworkEdits(way_back=True)
     for _ in range(10):
         next(run)
@@ -196,7 +196,7 @@ def test_an_edit_that_is_dragged_is_one_step_and_one_change() -> None:
             if isinstance(message, SettingChange):
                 history.append(message)
     assert [(each.name, each.after) for each in history.setting_changes] == [(EDITED, 1)]
-    [edits] = told_of(run.send(("undo",)), NetworkEdits)
+    [edits] = of_kind(run.send(("undo",)), NetworkEdits)
     assert edits == NetworkEdits()
     run.close()
 
@@ -206,7 +206,7 @@ def test_a_checkpoint_replaces_an_edited_network_and_it_learns() -> None:
     next(run)
     run.send(("edit", Edit(0, 0)))
     run.send(("restore", 0))
-    [edits] = told_of(run.send(("undo",)), NetworkEdits)
+    [edits] = of_kind(run.send(("undo",)), NetworkEdits)
     assert edits == NetworkEdits()
     run.close()
 

@@ -53,9 +53,9 @@ def test_without_the_extra_one_line_names_the_command(tmp_path, monkeypatch, cap
         ["evaluate", "--model", "run"],
     ):
         assert main(arguments) == 1
-        told = capsys.readouterr().err
-        assert told.count("\n") == 1
-        assert 'pip install -e ".[gym]"' in told
+        stderr = capsys.readouterr().err
+        assert stderr.count("\n") == 1
+        assert 'pip install -e ".[gym]"' in stderr
 
 
 def train_cart_pole(folder, decisions, *more):
@@ -120,9 +120,9 @@ class TestLearningOthersEnvironments:
         refused = {"Nowhere-v0": "Nowhere", "Pendulum-v1": "Discrete actions", "Blackjack-v1": "Box of observations"}
         for env, message in refused.items():
             assert main(["train", "--env", env, "--output", str(tmp_path / "run"), "--seconds", "1"]) == 1
-            told = capsys.readouterr().err
-            assert told.count("\n") == 1
-            assert message in told
+            stderr = capsys.readouterr().err
+            assert stderr.count("\n") == 1
+            assert message in stderr
 
     def test_a_damaged_scale_is_named(self, tmp_path):
         train_cart_pole(tmp_path / "run", 400)

@@ -39,7 +39,7 @@ def full_history():
     return history
 
 
-def test_columns_are_what_was_told():
+def test_columns_are_what_was_appended():
     history = full_history()
     assert len(history) == 10
     assert history["decisions"].tolist() == list(range(10))
@@ -56,12 +56,12 @@ def test_points_are_thinned_evenly_and_the_latest_is_always_there(subtests):
             history = History()
             for number in range(count):
                 history.append(point(number))
-            told = history["decisions"]
-            assert len(told) == len(history) <= CAPACITY
-            assert len(told) >= min(count, CAPACITY // 2)
-            assert told[0] == 0
-            assert told[-1] == count - 1
-            gaps = np.diff(told)
+            decisions = history["decisions"]
+            assert len(decisions) == len(history) <= CAPACITY
+            assert len(decisions) >= min(count, CAPACITY // 2)
+            assert decisions[0] == 0
+            assert decisions[-1] == count - 1
+            gaps = np.diff(decisions)
             assert len(np.unique(gaps[:-1])) <= 1
             assert (gaps > 0).all()
 
@@ -130,8 +130,8 @@ def rewritten(folder, **changes):
     """Change arrays, or what is said of them; None takes it away."""
     with np.load(folder / HISTORY_FILE) as arrays:
         kept = dict(arrays)
-    told = json.loads(str(kept["described"])) | {name: each for name, each in changes.items() if name not in kept}
-    kept["described"] = np.array(json.dumps({name: each for name, each in told.items() if each is not None}))
+    described = json.loads(str(kept["described"])) | {name: each for name, each in changes.items() if name not in kept}
+    kept["described"] = np.array(json.dumps({name: each for name, each in described.items() if each is not None}))
     np.savez(folder / HISTORY_FILE, **kept | {name: each for name, each in changes.items() if name in kept})
 
 
@@ -168,7 +168,7 @@ def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
     assert not again[PARTS[-1]].any()
 
 
-def test_a_history_tells_in_which_unit_its_values_are_and_an_older_one_takes_it_from_its_network(tmp_path):
+def test_a_history_knows_in_which_unit_its_values_are_and_an_older_one_takes_it_from_its_network(tmp_path):
     history = full_history()
     history.reward_scale = 0.1
     history.write(tmp_path)

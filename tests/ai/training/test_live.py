@@ -43,12 +43,12 @@ def all_the_time(monkeypatch):
         monkeypatch.setattr(keeping, name, value)
 
 
-def told_in(run, turns):
+def messages_in(run, turns):
     return [message for _ in range(turns) for message in next(run)]
 
 
-def of(kind, told):
-    return [message for message in told if isinstance(message, kind)]
+def of(kind, messages):
+    return [message for message in messages if isinstance(message, kind)]
 
 
 @pytest.mark.parametrize(
@@ -60,10 +60,10 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
     all_the_time(monkeypatch)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
-    told = told_in(run, 1)
+    messages = messages_in(run, 1)
     scores = []
     for _ in range(90):
-        told += next(run)
+        messages += next(run)
         score = headless.advance().evaluation
         scores += [score] if score else []
     answer = run.send(("save", tmp_path / "run"))
@@ -75,7 +75,7 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
     assert saved.best == headless.best
     if headless.best is not None:
         assert np.array_equal(saved.best_agent().network.values, headless.best_agent().network.values)
-    tried = of(Validation, [*told, *answer])
+    tried = of(Validation, [*messages, *answer])
     assert [(each.success, each.mean_return) for each in tried] == [(each.success, each.mean_return) for each in scores]
     assert [each.decisions for each in tried] == [640 * (each + 1) for each in range(len(scores))]
     assert len(tried) == (4 if config.num_envs == 32 else 0)
@@ -92,10 +92,10 @@ def test_the_first_turn_says_how_it_begins(begin):
 
 def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_process(begin):
     run = begin()
-    told = told_in(run, 200)
-    for message in [*told[:300], *run.send(("change", "discount", 0.9)), *run.send(("change", "nope", 1))]:
+    messages = messages_in(run, 200)
+    for message in [*messages[:300], *run.send(("change", "discount", 0.9)), *run.send(("change", "nope", 1))]:
         assert type(pickle.loads(pickle.dumps(message))) is type(message)
-    sights = of(SwarmState, told)
+    sights = of(SwarmState, messages)
     assert [sight.decisions for sight in sights] == [32 * number for number in range(200)]
     for before, sight in pairwise(sights):
         assert sight.position.shape == (32, 2)
@@ -105,7 +105,7 @@ def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_
         # No lander moves further than that in 1/15 s: those whose flight has ended are still where it did.
         assert (np.abs(sight.position - before.position)[goes_on] < 1.5).all()
         assert (np.abs(sight.earned[~goes_on]) < 150).all(), "they have begun anew"
-    points = of(Point, told)
+    points = of(Point, messages)
     assert (np.diff([point.decisions for point in points]) == 256).all()
     last = points[-1]
     assert last.episodes > 10
@@ -123,10 +123,10 @@ def test_the_careful_lander_acts_at_random_the_least():
 
 def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
     run = begin(TINY.changed(normalise_inputs=True))
-    checkpoints = of(Checkpoint, told_in(run, 200))
+    checkpoints = of(Checkpoint, messages_in(run, 200))
     assert [each.decisions for each in checkpoints] == [0, 2528, 5056]
     other = begin(TINY.changed(normalise_inputs=True))
-    again = of(Checkpoint, told_in(other, 90))
+    again = of(Checkpoint, messages_in(other, 90))
     assert np.array_equal(checkpoints[1].values, again[1].values)
     training = Training(TINY.changed(normalise_inputs=True), 0, evaluate_every=0)
     while training.agent.decisions < 2528:
@@ -149,14 +149,14 @@ REFUSED = [
 
 def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin):
     run, quiet = begin(), begin()
-    told_in(run, 10)
+    messages_in(run, 10)
     for name, value, words in REFUSED:
         (answer,) = run.send(("change", name, value))
         assert isinstance(answer, Refused), (name, value)
         assert words in answer.problem
-    assert not of(SettingChange, told_in(quiet, 10))
-    told, expected = of(SwarmState, told_in(run, 30))[-1], of(SwarmState, told_in(quiet, 30))[-1]
-    assert np.array_equal(told.position, expected.position)
+    assert not of(SettingChange, messages_in(quiet, 10))
+    actual, expected = of(SwarmState, messages_in(run, 30))[-1], of(SwarmState, messages_in(quiet, 30))[-1]
+    assert np.array_equal(actual.position, expected.position)
 
 
 def live_knobs():
@@ -182,7 +182,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
     value = ELSEWHERE.get(name, getattr(config, name) * 0.8)
     run, quiet = begin(config), begin(config)
     if name.startswith("success"):
-        told_in(run, 5), told_in(quiet, 5)
+        messages_in(run, 5), messages_in(quiet, 5)
         for each in (run, quiet):  # there are no landings yet to learn from: give it some
             training = each.gi_frame.f_locals["session"].training
             rng = np.random.default_rng(0)
@@ -190,9 +190,9 @@ def test_every_live_knob_makes_a_difference(begin, name):
             picked = [part[:64].copy() for part in cells]
             picked[0] = rng.normal(size=picked[0].shape).astype(np.float32)
             training.agent.successes.add(type(cells)(*picked))
-    told_in(run, 10), told_in(quiet, 10)
+    messages_in(run, 10), messages_in(quiet, 10)
     assert isinstance(run.send(("change", name, value))[0], SettingChange)
-    told_in(run, 25), told_in(quiet, 25)
+    messages_in(run, 25), messages_in(quiet, 25)
     ours, theirs = (each.gi_frame.f_locals["session"].training for each in (run, quiet))
     assert getattr(ours.agent.config, name) == value
     same = np.array_equal(ours.observation, theirs.observation)
@@ -201,7 +201,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
 
 def test_turned_weights_pay_in_the_run_that_goes_on(begin):
     run = begin(TINY.changed(spawn="fixed"))
-    told_in(run, 20)
+    messages_in(run, 20)
     run.send(("change", "reward_weights.time", -100.0))
     before = of(SwarmState, next(run))[0].earned
     after = of(SwarmState, next(run))[0].earned
@@ -210,8 +210,8 @@ def test_turned_weights_pay_in_the_run_that_goes_on(begin):
 
 def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
     run = begin()
-    told = told_in(run, 120)
-    first, second = of(Checkpoint, told)
+    messages = messages_in(run, 120)
+    first, second = of(Checkpoint, messages)
     answer = run.send(("restore", second.decisions + 5))
     assert of(SettingChange, answer) == [SettingChange(119 * 32, REVERTED, None, second.decisions)]
     assert np.array_equal(of(NetworkState, answer)[0].values, second.values)
@@ -222,7 +222,7 @@ def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
 
 def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
-    told_in(run, 50)
+    messages_in(run, 50)
     assert not (tmp_path / "keep").exists()
     run.close()
     assert resume(Training, tmp_path / "keep").agent.decisions == 49 * 32
@@ -250,45 +250,45 @@ def full(*_):
     raise OSError(28, "No space left on device")
 
 
-def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
+def test_a_full_disk_is_reported_once_and_training_goes_on(begin, tmp_path, monkeypatch):
     all_the_time(monkeypatch)
     run = begin(TINY, keep=tmp_path / "keep")
-    told_in(run, 10)
+    messages_in(run, 10)
     assert of(Saved, run.send(("save", tmp_path / "run"))) == [Saved(tmp_path / "run")]
     monkeypatch.setattr(History, "write", full)
     assert of(Saved, run.send(("save", tmp_path / "run"))) == [Saved(tmp_path / "run", "No space left on device")]
     assert resume(Training, tmp_path / "run").agent.decisions == 9 * 32  # what was there before is whole
-    told = told_in(run, 100)
-    assert of(Saved, told) == [Saved(tmp_path / "keep", "No space left on device")]
-    assert len(of(SwarmState, told)) == 100
+    messages = messages_in(run, 100)
+    assert of(Saved, messages) == [Saved(tmp_path / "keep", "No space left on device")]
+    assert len(of(SwarmState, messages)) == 100
     monkeypatch.undo()
     run.close()
     assert resume(Training, tmp_path / "keep").agent.decisions == 109 * 32
 
 
-def until_it_fails(run, told):
+def until_it_fails(run, messages):
     for _ in range(200):
-        told += next(run)
+        messages += next(run)
 
 
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
-    told = told_in(run, 120)
+    messages = messages_in(run, 120)
     run.gi_frame.f_locals["session"].training.agent.replay.transitions.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
-        until_it_fails(run, told)
-    good = of(Checkpoint, told)[-1]
+        until_it_fails(run, messages)
+    good = of(Checkpoint, messages)[-1]
     assert good.decisions > 0
     kept = resume(Training, tmp_path / "keep")
     assert np.array_equal(kept.agent.network.values, good.values)
     assert History.read(tmp_path / "keep").checkpoints[-1].decisions == good.decisions
     again = begin(TINY, resume=tmp_path / "keep")
-    assert of(Point, told_in(again, 30))
+    assert of(Point, messages_in(again, 30))
 
 
 def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
-    told = told_in(run, 78)
+    messages = messages_in(run, 78)
     inside = run.gi_frame.f_locals["session"]
     assert of(Saved, run.send(("save", tmp_path / "keep"))) == [Saved(tmp_path / "keep")]
     inside.training.agent.target.values[3] = np.nan  # behind the back of every check
@@ -296,8 +296,8 @@ def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     (saved,) = of(Saved, run.send(("save", tmp_path / "keep")))
     assert "finite" in saved.problem
     with pytest.raises(FloatingPointError, match="not finite after learning step"):
-        until_it_fails(run, told)
-    assert all(np.isfinite(each.values).all() for each in of(Checkpoint, told))
+        until_it_fails(run, messages)
+    assert all(np.isfinite(each.values).all() for each in of(Checkpoint, messages))
     assert np.isfinite(resume(Training, tmp_path / "keep").agent.network.values).all()
 
 
@@ -309,7 +309,7 @@ def test_there_must_be_a_run_to_go_on_with_and_it_must_be_of_landers(begin, tmp_
         next(begin(gym_config("CartPole-v1")))
 
 
-def told_of(entries):
+def by_kind(entries):
     """Entries of a history by kind, without what the clock says."""
     alike = [replace(each, seconds=0.0) if isinstance(each, Point | Validation) else each for each in entries]
     return [[repr(each) for each in alike if isinstance(each, kind)] for kind in (Point, Validation, SettingChange)]
@@ -319,13 +319,13 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
     monkeypatch.setattr(LanderTask, "evaluate_every", 1600)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
     straight, run = begin(seed=3), begin(seed=3)
-    whole, pieces = told_in(straight, 260), told_in(run, 103)  # in the midst of validation flights
+    whole, pieces = messages_in(straight, 260), messages_in(run, 103)  # in the midst of validation flights
     for turns in (1, 80, 76):
         pieces += run.send(("save", tmp_path / "run"))  # which flies what is left of them
         run = begin(resume=tmp_path / "run")
         assert of(RunStarted, next(run))[0].lost == ""
-        pieces += told_in(run, turns)
-    assert told_of(pieces) == told_of(whole)
+        pieces += messages_in(run, turns)
+    assert by_kind(pieces) == by_kind(whole)
     assert len(of(Validation, whole)) == 4
     for each, folder in ((straight, "straight"), (run, "pieces")):
         each.send(("save", tmp_path / folder))
@@ -337,15 +337,15 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
 
 def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     run = begin()
-    before = of(Point, told_in(run, 250))
+    before = of(Point, messages_in(run, 250))
     assert np.isnan(before[0].mean_return), "no flight had ended"
     assert np.isnan(before[0].loss)
     assert before[-1].mean_return < -50
     run.send(("save", tmp_path / "run"))
     remove_state(tmp_path / "run")
-    told = told_in(begin(resume=tmp_path / "run"), 60)
-    assert "empty memory" in of(RunStarted, told)[0].lost
-    after = of(Point, told)
+    messages = messages_in(begin(resume=tmp_path / "run"), 60)
+    assert "empty memory" in of(RunStarted, messages)[0].lost
+    after = of(Point, messages)
     assert after[0].mean_return != 0.0, "of the hundred flights before"
     assert np.isnan([after[0].loss, after[0].mean_q]).all(), "it has not learnt since"
     assert np.isfinite([after[-1].loss, after[-1].mean_q]).all()
@@ -353,7 +353,7 @@ def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
 
 def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     run = begin(clock=(clock := Clock()))
-    told, history = told_in(run, 30), History()
+    messages, history = messages_in(run, 30), History()
 
     def turn(name, value):
         for message in run.send(("change", name, value)):
@@ -362,12 +362,12 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     for value in (0.97, 0.96, 0.95, 0.9):  # a drag, with a decision at each step
         turn("discount", value)
         clock.now += 0.3
-        told += told_in(run, 1)
+        messages += messages_in(run, 1)
     (mark,) = history.setting_changes
     assert (mark.before, mark.after, mark.decisions) == (TINY.discount, 0.9, 32 * 32)
     turn("learning_rate", 0.1)
     clock.now += 5.0
-    told_in(run, 1)
+    messages_in(run, 1)
     turn("discount", 0.85)
     assert [(each.name, each.before, each.after) for each in history.setting_changes] == [
         ("discount", TINY.discount, 0.9),

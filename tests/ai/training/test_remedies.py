@@ -54,8 +54,8 @@ class Watched:
             self.adviser.advise(self.history, self.config)
         return self.adviser.shown.name if self.adviser.shown else ""
 
-    def _take(self, told: tuple[Any, ...]) -> bool:
-        news = [message for message in told if isinstance(message, Point | SettingChange | Checkpoint)]
+    def _take(self, messages: tuple[Any, ...]) -> bool:
+        news = [message for message in messages if isinstance(message, Point | SettingChange | Checkpoint)]
         for message in news:
             self.history.append(message)
             if isinstance(message, SettingChange) and hasattr(self.config, message.name):

@@ -76,10 +76,10 @@ def test_what_is_not_turned_on_changes_nothing():
 
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     run = LanderSession.live(TINY)
-    told = [next(run)]
+    messages = [next(run)]
     training = getgeneratorlocals(run)["session"].training
-    told += [next(run) for _ in range(80)]
-    assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
+    messages += [next(run) for _ in range(80)]
+    assert isinstance(messages[0][-2], InForce) or any(isinstance(each, InForce) for each in messages[0])
     (said,) = [each for each in run.send(("change", "discount", 0.9)) if isinstance(each, InForce)]
     assert said.values["learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
     assert said.values["epsilon_start"] == training.epsilon

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ai.training.config import PRESETS, Config
 
-# The settings that differ are told beside those that the presets had when the networks were trained.
+# The settings that differ stand beside those that the presets had when the networks were trained.
 THEN = PRESETS | {"modern": Config()}
 ROOT = Path(__file__).resolve().parents[3]
 FIGURES = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")

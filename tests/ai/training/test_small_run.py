@@ -1,4 +1,4 @@
-"""Small runs: the same for the same seed, the real memory told as it is."""
+"""Small runs: the same for the same seed, the real memory shown as it is."""
 
 from itertools import islice
 
@@ -33,7 +33,7 @@ def test_the_same_seed_gives_the_same_run_alone_or_beside_another():
 
 
 @pytest.mark.parametrize("prioritised", [False, True])
-def test_the_memory_that_is_told_is_the_one_that_is_drawn_from(prioritised: bool):
+def test_the_memory_that_is_shown_is_the_one_that_is_drawn_from(prioritised: bool):
     run = SmallRun(SMALL_RUN.changed(prioritised=prioritised, replay_size=400, learning_starts=64), 0)
     seen: list[float] = []
     for _ in range(60):

@@ -90,7 +90,7 @@ def test_who_is_taught_hard_starts_is_chosen_by_them_too():
     pilot = ScriptedPilot()
     taught, other = (LanderTask(Config(spawn=spawn)).evaluate(pilot, 40, 3) for spawn in ("widening", "thorough"))
     assert other == evaluate(pilot, 40, 3, "random")
-    assert replace(taught, hard=None) == other, "what is told of random starts is of those alone"
+    assert replace(taught, hard=None) == other, "what is reported of random starts is of those alone"
     nothing = LanderTask(Config(spawn="widening")).evaluate(NoPilot(), 4, 3)
     assert taught.hard
     assert taught.hard > 0.5

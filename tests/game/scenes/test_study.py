@@ -116,8 +116,8 @@ def test_a_study_is_read_without_ray_or_optuna(tmp_path):
     program = (
         "import sys; sys.modules['ray'] = sys.modules['optuna'] = None\n"
         "from pathlib import Path\n"
-        "from ai.sweep.study import Study; from ai.sweep.report import page, told\n"
-        f"study = Study.load(Path({str(folder)!r})); assert 'Trial' not in told(study); assert '<svg' in page(study)\n"
+        "from ai.sweep.study import Study; from ai.sweep.report import page, table\n"
+        f"study = Study.load(Path({str(folder)!r})); assert 'Trial' not in table(study); assert '<svg' in page(study)\n"
     )
     subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True)
     assert Study.load(folder).best().number == 0
