@@ -151,16 +151,16 @@ def untranslated(translated: Catalog, english_texts: Catalog) -> list[str]:
 def faults(translated: Catalog) -> Iterator[str]:
     """Yield what is wrong with translations: other braces than the English, missing forms, letters without pictures."""
     for message in translated:
-        told, forms = _forms(message.string), _forms(message.id)
-        if not message.id or not any(told) or message.fuzzy:
+        strings, forms = _forms(message.string), _forms(message.id)
+        if not message.id or not any(strings) or message.fuzzy:
             continue
-        if len(forms) > 1 and (len(told) != translated.num_plurals or not all(told)):
+        if len(forms) > 1 and (len(strings) != translated.num_plurals or not all(strings)):
             yield f"{_name(message)}: plural forms are missing"
         # The form for one may say the number in a word.
         wanted, may_miss = set.union(*map(braces, forms)), {"count"} if len(forms) > 1 else set()
-        if any(not wanted - may_miss <= braces(form) <= wanted for form in told if form):
-            yield f"{_name(message)}: {told} has other braces than {forms}"
-        if missing := [letter for form in told for letter in form if letter not in CONTROL and not drawn(letter)]:
+        if any(not wanted - may_miss <= braces(form) <= wanted for form in strings if form):
+            yield f"{_name(message)}: {strings} has other braces than {forms}"
+        if missing := [letter for form in strings for letter in form if letter not in CONTROL and not drawn(letter)]:
             yield f"{_name(message)}: Manrope has no {', '.join(map(repr, missing))}"
 
 

@@ -123,7 +123,7 @@ def test_a_flight_replays_to_the_pose_it_ended_in():
     record = flight_file.read(DATA / "flight.json")
     replay = FlightReplay(record)
     replay.scout(replay.length)
-    replay.seek(replay.length)
+    replay.go_to(replay.length)
     assert replay.at == replay.length == 698
     assert replay.faithful
     assert record.entry.landed

@@ -191,7 +191,7 @@ def _pad(rng: np.random.Generator) -> Signal:
             ((-24, 0.8), (-17, 1.0), (-12, 0.9), (-5, 0.7), (2, 0.5), (9, 0.22))
         ):
             voice = gain * synth.choir(rng, _PAD, note(semitones), harmonics, 9.0, top=3200.0)
-            voices.append(synth.breathe(voice, 1 + number % 3, 0.6, 2 * np.pi * number / 6))
+            voices.append(synth.swell(voice, 1 + number % 3, 0.6, 2 * np.pi * number / 6))
         return synth.looped(np.sum(voices, axis=0), _PAD)
 
     return np.stack([side(), side()], axis=1)

@@ -104,7 +104,7 @@ def choir(
     return spectrum
 
 
-def breathe(spectrum: Spectrum, turns: int, depth: float, phase: float) -> Spectrum:
+def swell(spectrum: Spectrum, turns: int, depth: float, phase: float) -> Spectrum:
     """Modulate a loop's amplitude by 1 + depth cos(2π turns t + phase): it swells and fades `turns` times."""
     side = 0.5 * depth * np.exp(1j * phase)
     swelling = spectrum.copy()

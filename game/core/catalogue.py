@@ -85,8 +85,8 @@ def _named(folder: Path, code: str) -> str:
 
 def system() -> str:
     """Return the system's languages as LANGUAGE has them; where no variable names one, as on Windows, SDL does."""
-    if told := next(filter(None, map(os.environ.get, VARIABLES)), ""):
-        return told
+    if preferred := next(filter(None, map(os.environ.get, VARIABLES)), ""):
+        return preferred
     from pygame.system import get_pref_locales
 
     return ":".join(each["language"] for each in get_pref_locales())

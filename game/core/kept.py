@@ -50,6 +50,6 @@ def _stamp(path: Path) -> _Stamp:
     """Return what tells whether a file has changed, or any in a folder: names, sizes and times; empty if unknown."""
     try:
         files = path.rglob("*") if path.is_dir() else [path]
-        return sorted((str(each), (told := each.stat()).st_size, told.st_mtime_ns) for each in files)
+        return sorted((str(each), (status := each.stat()).st_size, status.st_mtime_ns) for each in files)
     except OSError:
         return []

@@ -1,4 +1,4 @@
-"""Names of files and folders that every system allows, and what a player is told when one can't be used."""
+"""Names of files and folders that every system allows, and what a player reads when one can't be used."""
 
 from __future__ import annotations
 

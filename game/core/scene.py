@@ -66,7 +66,7 @@ class Scene:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""
 
     def laid_on(self, canvas: Canvas) -> Canvas:
-        """Return the canvas in whose points this scene is laid out, and is told of the mouse."""
+        """Return the canvas in whose points this scene is laid out, and is given the mouse."""
         return canvas.whole.reading if self.flows else canvas.whole
 
     def draw_on(self, canvas: Canvas, alpha: float) -> None:

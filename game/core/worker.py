@@ -105,9 +105,9 @@ class Worker:
 
     def poll(self) -> list[Any]:
         """Return all messages received since the last call; call it once a frame. Never waits."""
-        told: list[Any] = []
+        messages: list[Any] = []
         while not self._inbox.empty():
-            told += self._hear(self._inbox.get_nowait())
+            messages += self._hear(self._inbox.get_nowait())
         now = self.clock()
         self._silence += min(now - self._polled, _LONGEST_FRAME)
         self._polled = now
@@ -117,7 +117,7 @@ class Worker:
             self._clear_up(now)
         else:
             self._ask()
-        return told
+        return messages
 
     def pause(self) -> None:
         """Pause the generator; a paused worker uses no processor time."""
@@ -170,23 +170,23 @@ class Worker:
         if self._over is None:
             self._orders.put(pickle.dumps((name, value)))
 
-    def _hear(self, told: MessageBatch | Exception | None) -> list[Any]:
+    def _hear(self, received: MessageBatch | Exception | None) -> list[Any]:
         """Handle one bundle, or a reading error, from the process; None means that the connection has closed."""
-        if isinstance(told, MessageBatch):
+        if isinstance(received, MessageBatch):
             self._wanted, self._heard, self._silence = self._wanted - 1, True, 0.0
-            if told.ended and self._over is None:
-                if told.trace:
-                    _log.error("in the worker:\n%s", told.trace)
-                if told.problem:
-                    self._fail(texts.WORKER_RAISED.format(reason=told.problem), STOP_SECONDS)
+            if received.ended and self._over is None:
+                if received.trace:
+                    _log.error("in the worker:\n%s", received.trace)
+                if received.problem:
+                    self._fail(texts.WORKER_RAISED.format(reason=received.problem), STOP_SECONDS)
                 else:
                     self._finish(STOP_SECONDS)
-            return told.messages
-        if told is None:
+            return received.messages
+        if received is None:
             self._lost = True
         elif self._over is None:
-            _log.error("a worker's message cannot be read", exc_info=told)
-            self._fail(texts.WORKER_NONSENSE.format(reason=told))
+            _log.error("a worker's message cannot be read", exc_info=received)
+            self._fail(texts.WORKER_NONSENSE.format(reason=received))
         return []
 
     def _look_after(self, now: float) -> None:

@@ -79,7 +79,7 @@ class MessageQueue:
 
 def serve(connection: Connection, payload: bytes, niceness: int = NICENESS) -> None:
     """Run the pickled (function, args, kwargs) to its end, and send its messages through `connection`."""
-    _settle(niceness)
+    _configure(niceness)
     service = _Service(connection)
     signal.signal(signal.SIGTERM, lambda *_: service.terminate())
     bundle = MessageBatch(ended=True)
@@ -101,7 +101,7 @@ def serve(connection: Connection, payload: bytes, niceness: int = NICENESS) -> N
             connection.send(MessageBatch([], True, bundle.problem or _in_words(error), bundle.trace))
 
 
-def _settle(niceness: int) -> None:
+def _configure(niceness: int) -> None:
     """Configure the process to spare the window: one core, lower priority; what ends the window is left to it."""
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ[f"{library}_NUM_THREADS"] = "1"

@@ -30,7 +30,7 @@ class FilterFilm:
 
     Attributes:
         history: the run's history; another one belongs to another run.
-        moments: all that the run has told of.
+        moments: all that the run has sent.
         at: number of the chosen moment; None for the newest, whichever that is.
 
     """

@@ -33,7 +33,7 @@ def mnist_test(assets_dir: Path) -> tuple[Pixels, Labels]:
 
 
 def read_ahead(models_dir: Path, assets_dir: Path) -> None:
-    """Read what scenes with digits begin with; what is missing or damaged will be told by them."""
+    """Read what scenes with digits begin with; they report what is missing or damaged."""
     from ai.digits.mnist import MnistError
     from ai.nn import ModelFormatError
 

@@ -23,7 +23,7 @@ INK: Final[Colour] = (232, 236, 244)
 MUTE: Final[Colour] = (138, 149, 173)
 HUMAN: Final[Colour] = (255, 196, 112)
 NET: Final[Colour] = (112, 200, 255)
-# None, bronze, silver, gold; also told apart by words and by the number of lit lamps.
+# None, bronze, silver, gold; also distinguished by words and by the number of lit lamps.
 MEDALS: Final[tuple[Colour, ...]] = (MUTE, (205, 140, 96), (196, 206, 224), (255, 208, 110))
 
 FIGURE: Final = 34.0

@@ -11,7 +11,7 @@ from game.core import texts
 from game.core.scene import Transition, push
 from game.training.run import TrainingRun
 
-_PATIENCE: Final = 30  # frames without an answer, after which the player is told that it is being made
+_PATIENCE: Final = 30  # frames without an answer, after which a message says that it is being made
 
 
 class LessonDoor:

@@ -319,8 +319,8 @@ def _paint_names(view: NetworkView, signs: Canvas, number: int, centres: list[Po
     shown = len(column.units)
     if shown < column.total or not names:
         words = texts.NETWORK_VIEW_ALL if shown == column.total else texts.NETWORK_VIEW_SOME
-        told = words.format(shown=shown, count=column.total)
-        signs.text(told, (centres[0][0], _last_line(view)), size=LABEL - 1, colour=MUTE, align="centre")
+        caption = words.format(shown=shown, count=column.total)
+        signs.text(caption, (centres[0][0], _last_line(view)), size=LABEL - 1, colour=MUTE, align="centre")
 
 
 def _last_line(view: NetworkView) -> float:

@@ -79,7 +79,7 @@ def _write_cells(row: Cursor, cells: Sequence[str], widths: Sequence[float]) -> 
     row.y = max(name.y, top + LEADING * row.size)
 
 
-def told(*pairs: tuple[str, str]) -> str:
+def figure_rows(*pairs: tuple[str, str]) -> str:
     """Return pairs of a word and a figure as the rows of an explanation."""
     return "\n".join("\t".join(pair) for pair in pairs)
 

@@ -26,7 +26,7 @@ from game.ui.context import Context
 
 SIZE: Final = (640, 360)  # pixels
 EVERY: Final = 3  # steps per frame
-_AFTER: Final = 120  # updates shown after the end, while fire and dust settle
+_AFTER: Final = 120  # updates shown after the end, while fire and dust die away
 _LINGER: Final = 60  # steps that the last frame then stays on screen
 _SAMPLE: Final = 40  # steps between the frames sampled for the palette
 

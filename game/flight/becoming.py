@@ -85,15 +85,15 @@ def kind_of(entry: Entry) -> str:
     return "hills" if entry.pads > 1 else "ladder" if entry.on_ladder else "plain"
 
 
-def tells(entry: Entry) -> bool:
+def counts(entry: Entry) -> bool:
     """Whether a flight tells how often the player would land alone: they flew all of it, under the usual rules."""
     return entry.alone and not entry.practice
 
 
 def curves(entries: Iterable[Entry]) -> dict[str, list[Estimate]]:
     """Return for each kind of start the estimate before any flight, and after each that tells something."""
-    told = [entry for entry in entries if tells(entry)]
-    return {kind: _curve([entry for entry in told if kind_of(entry) == kind][-_MOST:]) for kind in KINDS}
+    counted = [entry for entry in entries if counts(entry)]
+    return {kind: _curve([entry for entry in counted if kind_of(entry) == kind][-_MOST:]) for kind in KINDS}
 
 
 def _curve(flights: Iterable[Entry]) -> list[Estimate]:

@@ -17,7 +17,7 @@ from game.flight.handicap import OWN
 from game.flight.networks import sentence, who
 
 TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
-_ASSISTS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are told
+_ASSISTS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are named
 # Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
 _OWN_HANDS: Final = frozenset({"toggle_thrust"})
 

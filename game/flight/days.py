@@ -48,14 +48,14 @@ class Attempt:
     @property
     def line(self) -> str:
         """The result in a line for a message, which tells nothing of the way."""
-        return self.told("eased" if self.barred else "first")
+        return self.line_as("eased" if self.barred else "first")
 
     @property
     def result(self) -> str:
         """How it ended, for the list and for the line."""
         return texts.BESIDE_RESULT if self.intact else texts.RIVAL_RESULTS[self.outcome]
 
-    def told(self, attempt: str) -> str:
+    def line_as(self, attempt: str) -> str:
         """Return the result in a line for a message; `attempt` is a key of `texts.DAILY_ATTEMPTS`."""
         landed = self.outcome == Outcome.LANDED.name
         end = texts.DAILY_LANDED.format(points=self.score) if landed else self.result

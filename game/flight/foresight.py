@@ -15,7 +15,7 @@ from ai.lander.route import Route
 from engine import DT
 from game.flight.networks import Policy
 
-HELD: Final = 0.5  # seconds for which each action is held: after less, the six are hardly told apart
+HELD: Final = 0.5  # seconds for which each action is held: after less, the six are hardly distinguished
 _DECISIONS: Final = round(HELD / (DECISION_STEPS * DT))
 _EVERY: Final = 2  # decisions between two places of a path
 _APART: Final = 30  # steps between two moments that are kept

@@ -178,10 +178,10 @@ def fly_ahead() -> Turns:
     lookahead = Lookahead(DeepQAgent())
     found: dict[Push, int] = {}
     order: _Order | None = None
-    told: Iterable[Found] | None = None
+    answer: Iterable[Found] | None = None
     while True:
-        command = yield told
-        told = ()
+        command = yield answer
+        answer = ()
         if isinstance(command, Request):
             if command.flyer:
                 flyer, route = command.flyer
@@ -192,4 +192,4 @@ def fly_ahead() -> Turns:
                 order.hint(command)
         else:
             turn = list(islice(order.flown, _AT_A_TIME)) if order else []
-            told = [each for each in turn if each] if turn else None
+            answer = [each for each in turn if each] if turn else None

@@ -43,7 +43,7 @@ class OutcomeCard:
     compared: tuple[tuple[str, str], ...] = ()  # other scores from the same start, in words and a figure
 
     @property
-    def told(self) -> str:
+    def stepped_in_words(self) -> str:
         """Text that says how often the co-pilot stepped in; empty if there is nothing to say."""
         times, few = self.stepped_in, texts.CARD_SAVED
         if not (times or self.watched):

@@ -110,6 +110,6 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
     crashed = np.bincount(env.cause[env.outcome == Outcome.CRASHED], minlength=len(Cause))[1:]
     others = [(env.outcome == outcome).sum() for outcome in (Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT)]
     lost = tuple(int(count) for count in (*crashed, *others))
-    told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(began, 3), lost)
-    shelf.keep(told)
-    yield [told]
+    result = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(began, 3), lost)
+    shelf.keep(result)
+    yield [result]

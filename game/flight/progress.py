@@ -31,7 +31,7 @@ _MOST: Final = 5  # resets that can be undone
 
 
 @dataclass(frozen=True)
-class Told:
+class ProgressFigures:
     """What a reset would put away, as figures for the question before it."""
 
     flights: int
@@ -47,11 +47,11 @@ class Progress:
         self._trash = Trash(user_dir, _MOST)
 
     @property
-    def told(self) -> Told:
+    def figures(self) -> ProgressFigures:
         """What there is now."""
         entries = Records(self._folder).entries()
         medals = {entry.course for entry in entries if entry.medal and not entry.outdated}
-        return Told(len(entries), len(medals), len(self._settings.learnt))
+        return ProgressFigures(len(entries), len(medals), len(self._settings.learnt))
 
     @property
     def restorable(self) -> bool:

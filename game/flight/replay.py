@@ -14,7 +14,7 @@ from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
 from game.flight.flight_file import Record
 
-_EVERY: Final = 20  # steps between the snapshots that seeking starts from
+_EVERY: Final = 20  # steps between the snapshots from which `go_to` starts
 _EXACT: Final = 1e-6  # tolerance of the end pose in metres and radians, for rounding on other processors
 
 
@@ -128,7 +128,7 @@ class FlightReplay:
         else:
             self.flight.rest()
 
-    def seek(self, step: int) -> None:
+    def go_to(self, step: int) -> None:
         """Show another step, `reached` at most."""
         step = min(max(step, 0), self.reached)
         mark = min(step // _EVERY, len(self._moments) - 1)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from game.ui.context import Context
 
 LOG_NAME: Final = "tranquility.log"
-_SETTLE: Final = 0.1  # seconds of constant size before a redraw: a landscape takes too long to paint while resizing
+_STEADY: Final = 0.1  # seconds of constant size before a redraw: a landscape takes too long to paint while resizing
 _PLACED: Final = 5 / 12  # share of the enlargement for which screens have room whose words do not flow
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 _log = logging.getLogger("tranquility")
@@ -77,7 +77,7 @@ class App:
         self.notes = Note()
         self.scan = SwitchScan(context)
         self._mouse: tuple[tuple[int, int], ...] = ()  # the mouse's last position, in the window and on the desktop
-        self._settled = 0.0  # time at which the window has kept its size long enough for a redraw
+        self._redraw_at = 0.0  # time at which the window has kept its size long enough for a redraw
         self.settings_writer = SettingsWriter(context.settings_file, context.settings)
         self.window = GameWindow(context.settings.full_screen)
         self.canvas = Canvas(self.window.surface)
@@ -122,7 +122,7 @@ class App:
             self._guarded(self.scenes.update)
             self._guarded(lambda: self.scenes.apply(self.scan.update(self.scenes.top, self.canvas)))
             self.context.sound.update()
-        if self.scenes.running and not self.window.minimised and time_now >= self._settled:
+        if self.scenes.running and not self.window.minimised and time_now >= self._redraw_at:
             self.draw()
             self._guarded(paint_on)
         if self._capped:
@@ -196,7 +196,7 @@ class App:
                 if self.window.size != self._attached_size:
                     self.window.stay_legible()
                     self._follow_window()
-                    self._settled = self._last + _SETTLE
+                    self._redraw_at = self._last + _STEADY
         if not self.scenes.running:
             return
         if event.type in _MOUSE:
@@ -285,7 +285,7 @@ class App:
         try:
             call()
         except Exception as error:
-            _log.exception("in %s", self.scenes.told)
+            _log.exception("in %s", self.scenes.description)
             self.canvas.surface.set_clip(None)
             self.scenes.reset(Route("error_screen", (error, self.context.user_dir / LOG_NAME)))
 

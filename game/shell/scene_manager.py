@@ -53,7 +53,7 @@ class SceneManager:
         return self.stack[-1]
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """Description of the stack, for the log."""
         return " > ".join(type(scene).__name__ for scene in self.stack)
 

@@ -73,13 +73,13 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
         if missing:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
-        told = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
-        if told.env != LANDER:
-            problem = texts.RUN_ELSEWHERE.format(env=brief(told.env, LONGEST_NAME))
+        training = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
+        if training.env != LANDER:
+            problem = texts.RUN_ELSEWHERE.format(env=brief(training.env, LONGEST_NAME))
             return SavedRun(name, folder, saved, problem=problem)
         return SavedRun(
-            name, folder, saved, brief(told.preset, LONGEST_NAME), len(told.changes), told.seed,
-            told.decisions, told.seconds, told.best.success if told.best else None,
+            name, folder, saved, brief(training.preset, LONGEST_NAME), len(training.changes), training.seed,
+            training.decisions, training.seconds, training.best.success if training.best else None,
             flyable=True, resumable=(folder / LAST).is_dir(),
         )  # fmt: skip
     except OSError as error:

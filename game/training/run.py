@@ -84,7 +84,7 @@ class TrainingRun:
         self._clear()
 
     def _clear(self) -> None:
-        """Forget all that a run has told."""
+        """Forget all that a run has reported."""
         self.history = History(self.kind.session.columns)
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
@@ -252,10 +252,10 @@ class TrainingRun:
 
     def poll(self) -> list[str]:
         """Handle all messages of the worker, and of the experiment's; return notes for the player."""
-        told = self._worker.poll() if self._worker else ()
+        messages = self._worker.poll() if self._worker else ()
         if self.waiting:  # from the previous run, only where it was saved
-            told = [message for message in told if isinstance(message, Saved)]
-        notes = [self._hear(message) for message in told]
+            messages = [message for message in messages if isinstance(message, Saved)]
+        notes = [self._hear(message) for message in messages]
         if not self.alive:
             self.stopping = False
             notes += self._name_ended()
@@ -381,9 +381,9 @@ class TrainingRun:
         self._leaving, self._worker = self._worker, twin._worker
         self._leaving.stop()
         self.runs, self._named = self.runs + 1, False
-        for told in ("history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits",
+        for name in ("history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits",
                      "in_force"):  # fmt: skip
-            setattr(self, told, getattr(twin, told))
+            setattr(self, name, getattr(twin, name))
         self.lesson, self.begun = None, True
         twin._worker, self.twin, self.differing = None, None, ()
         self._keep_in_step()

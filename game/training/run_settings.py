@@ -103,7 +103,7 @@ def figure(value: Any) -> str:
     return f"{value:,}".replace(",", "\u00a0").replace("-", "−")
 
 
-def told(changes: Mapping[str, Any]) -> str:
+def format_changes(changes: Mapping[str, Any]) -> str:
     """Format changes for the player, given values by the names of knobs."""
     labels = {knob.name: knob.label for knob in knob_descriptions()}
     return ", ".join(f"{labels.get(name, name)} {figure(value)}" for name, value in changes.items())

@@ -49,7 +49,7 @@ class Action:
             return controls.word(self.gamepad)
         return controls.word(self.key) if isinstance(self.key, Command) else key_name(self.key)
 
-    def told(self, controls: Controls) -> Hint:
+    def hint_for(self, controls: Controls) -> Hint:
         """Return its hint."""
         return Hint(self.key_word(controls), self.hint, self.run)
 
@@ -66,7 +66,7 @@ def answering(table: Table, event: pygame.event.Event) -> Action | None:
 def hints_of(table: Table, controls: Controls) -> list[Hint]:
     """Return the hints of a table, for the device in use."""
     return [
-        entry.told(controls) if isinstance(entry, Action) else entry
+        entry.hint_for(controls) if isinstance(entry, Action) else entry
         for entry in table
         if (entry.hint if isinstance(entry, Action) else entry.meaning)
     ]

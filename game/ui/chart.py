@@ -70,7 +70,7 @@ class Chart:
         self.runs: list[Series] = []  # as shown, the current one first
         self._ticks: tuple[Tick, ...] = ()
         self.x_range: Limits = (0.0, 1.0)  # ends of the horizontal axis
-        self._told: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
+        self._x_ends: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
         self._lines = self._make_grid(*(limits or (0.0, 1.0)))
         self._shown = self._goal
         self.cursor: float | None = None  # an x, for all charts of a row
@@ -142,7 +142,7 @@ class Chart:
             return
         first = not any(run.last() is not None for run in self.runs)
         self.runs, self.x_range, self._ticks, self.caption = runs, span, tuple(ticks), caption
-        self._told = tuple(dict.fromkeys((start, max(start, end))))
+        self._x_ends = tuple(dict.fromkeys((start, max(start, end))))
         self._set_limits()
         if first:
             self._shown = self._goal
@@ -280,9 +280,9 @@ class Chart:
                 room = sheet.size[0] / sheet.scale - plot.right - 6
                 sheet.text(word, (plot.right + 6, y), size=_AXES_SIZE, colour=_AXES, room=room)
         ends: tuple[tuple[float, Align], ...] = ((plot.x, "left"), (plot.right, "right"))
-        for (x, align), told in zip(ends, self._told, strict=False):
+        for (x, align), x_end in zip(ends, self._x_ends, strict=False):
             place = (x, plot.bottom + 15)
-            sheet.text(self.read_x(told), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
+            sheet.text(self.read_x(x_end), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
 
     def _value_at(self, x: float) -> float | None:
         """Return the value of the current run's curve at x."""

@@ -23,13 +23,13 @@ def pasted() -> str:
         return ""
 
 
-def give(context: Context, text: str, told: str) -> None:
-    """Copy a text and say so in the words `told`; without a clipboard, write it to a file and say where that is."""
+def give(context: Context, text: str, message: str) -> None:
+    """Copy a text and say so in the words `message`; without a clipboard, write it to a file and say where that is."""
     try:
         pygame.scrap.put_text(text)
     except pygame.error:
-        told = _written(context, text)
-    context.note(told)
+        message = _written(context, text)
+    context.note(message)
 
 
 def _written(context: Context, text: str) -> str:

@@ -82,9 +82,9 @@ class Note:
         """Return the width and the height of a note whose lines are no wider than that."""
         beside, above = _MARGINS
         room = min(widest, reading.view.width - 4 * beside)
-        told = lines(self.text, SMALL, "regular", room, reading.scale)
-        width = max(reading.text_width(line, size=SMALL) for line in told)
-        return width + 2 * beside, len(told) * LEADING * SMALL + 2 * above
+        wrapped = lines(self.text, SMALL, "regular", room, reading.scale)
+        width = max(reading.text_width(line, size=SMALL) for line in wrapped)
+        return width + 2 * beside, len(wrapped) * LEADING * SMALL + 2 * above
 
     def draw(self, canvas: Canvas) -> None:
         if not self._left:

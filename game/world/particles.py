@@ -194,7 +194,7 @@ class Particles:
                 self._rng.uniform(*size, number),
             )
 
-    def settle(self, foot: tuple[float, float], strength: float) -> None:
+    def raise_dust(self, foot: tuple[float, float], strength: float) -> None:
         """Raise a foot's dust, and sparks where it comes down hard; `strength` 0 to 1."""
         for kind, count, fast, rise, life, size in (
             (ParticleKind.DUST, int(4 + 9 * strength), (0.3, 1.8), (0.1, 0.8), (0.5, 1.2), (0.06, 0.14)),

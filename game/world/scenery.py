@@ -95,7 +95,7 @@ class Scenery:
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
         self.cut()
 
-    def breathe(self) -> None:
+    def animate(self) -> None:
         """Advance by 1/60 s all that moves whether or not anything flies."""
         if not self._calm:
             self._time += STEP

@@ -139,7 +139,7 @@ class Stage:
             strength = min(1.0, float(env.impact[0, 0]) / env.limits.touch_speed)
             self.jolt = _JOLT * 0.55 * strength**1.5
             for side in (-1, 1):
-                self.particles.settle(foot_place(x, y, float(env.angle[0]), side), strength)
+                self.particles.raise_dust(foot_place(x, y, float(env.angle[0]), side), strength)
             return Wreck(env, 0, self._rng)
         self.jolt = min(_JOLT, 4.0 + 1.4 * float(env.impact[0, :2].max()))
         return None if self.calm else Wreck(env, 0, self._rng)
@@ -164,7 +164,7 @@ class Stage:
         (x, y), angle = env.position[0].tolist(), float(env.angle[0])
         strength = min(1.0, max(0.0, self._fall) / env.limits.touch_speed)
         for foot in np.flatnonzero(down & ~self._down):
-            self.particles.settle(foot_place(x, y, angle, 2 * int(foot) - 1), strength)
+            self.particles.raise_dust(foot_place(x, y, angle, 2 * int(foot) - 1), strength)
             self.jolt = max(self.jolt, _JOLT * 0.55 * strength**1.5)
         self._down, self._fall = down.copy(), -float(env.velocity[0, 1])
 

@@ -1,4 +1,4 @@
-"""The craft after its flight: a wreck tumbles, a whole craft settles. Decoration only."""
+"""The craft after its flight: a wreck tumbles, a whole craft comes to rest. Decoration only."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STILL: Final = 0.05  # m/s and rad/s
 _SPIN: Final = 0.6  # rad/s for every m/s of the blow, at most
 _HOP: Final = 0.12  # share of the blow that throws it up again
 _TUMBLES: Final[dict[str, Any]] = {"restitution": 0.25, "friction": 0.7}
-_SETTLES: Final[dict[str, Any]] = {
+_STAYS: Final[dict[str, Any]] = {
     "restitution": 0.0,
     "friction": 1.6,
 }  # feet dig in: it stays where it came down, on a slope too
@@ -36,7 +36,7 @@ class Wreck:
 
     def __init__(self, env: LanderEnv, slot: int, rng: np.random.Generator) -> None:
         params, whole = env.params, bool(env.intact[slot])
-        surface = _SETTLES if whole else _TUMBLES
+        surface = _STAYS if whole else _TUMBLES
         self._world = World(gravity=(0.0, -env.gravity), batch=1, iterations=5)
         x, y = FOOT_CENTRE
         feet = [(-x, y), (x, y)] if whole else [(-x, y)]  # without the other leg it comes to lie on its hull

@@ -48,15 +48,15 @@ def explode():
 
 def counting(limit=10**9, weight=0):
     """Ticks, a Latest beside each; echoes commands without counting them."""
-    number, told = 0, [Tick(0), Latest(0)]
+    number, messages = 0, [Tick(0), Latest(0)]
     while number < limit:
-        command = yield told
+        command = yield messages
         if command is None:
             number += 1
             time.sleep(0.0005)
-            told = [Tick(number), Latest(number)] + [bytes(weight)] * (weight > 0)
+            messages = [Tick(number), Latest(number)] + [bytes(weight)] * (weight > 0)
         else:
-            told = [Echo(command)]
+            messages = [Echo(command)]
 
 
 def failing(error, after=3):

@@ -157,7 +157,7 @@ class Driver:
 
     def resize(self, size: tuple[int, int]) -> None:
         self.app.window.size = size
-        self.frames(10)  # until the window has settled
+        self.frames(10)  # until the window has kept its size
 
     @contextmanager
     def speaking(self, language: str) -> Iterator[None]:

@@ -48,8 +48,8 @@ class InlineWorker(Worker):
                 if self._limit is None or self._taken < self._limit:
                     self._taken += 1
                     self._take(lambda: next(self._turns))
-        told: list[Any] = pickle.loads(pickle.dumps(self._waiting.take()))
-        return told
+        messages: list[Any] = pickle.loads(pickle.dumps(self._waiting.take()))
+        return messages
 
     def stop(self) -> None:
         self.close()

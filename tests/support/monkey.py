@@ -52,7 +52,7 @@ WAYS = [*ALL, *(name for name in OVER_OTHERS if "Dialog" in name)]  # into any s
 _OF_FILES = {"ReplayScene", "StudyScene", "friend"}  # scenes for which files are written and read
 _DEEPEST = 7  # scenes one above the other
 _JUMP, _JUMP_HOME = 0.015, 0.15  # how often it is put somewhere else, and from the menu, where it soon would quit
-_TOLD = 25  # deeds before a fault that are told
+_LISTED = 25  # acts before a fault that are listed
 # What a training may say when its files are spoilt. It is shown to the player.
 _SAID = (OSError, ValueError, EOFError, MemoryError)
 _SIZES = [(1280, 720), (1280, 720), (960, 540), (1000, 800), (640, 360), (1600, 900)]
@@ -78,19 +78,19 @@ _NONSENSE = (b"", b"\x00\xff\xfe" * 200, b"{", b"[]", b"null", b'{"format": 1e99
 class Faults(logging.Handler):
     """Everything that went wrong, wherever it was caught."""
 
-    def __init__(self, deeds: deque[str]) -> None:
+    def __init__(self, acts: deque[str]) -> None:
         super().__init__(logging.ERROR)
         self.found: list[str] = []
-        self._deeds = deeds
+        self._acts = acts
 
     def add(self, what: str) -> None:
         """Note a fault, with what was done before."""
-        self.found.append(what + "\n  after: " + "; ".join(self._deeds))
+        self.found.append(what + "\n  after: " + "; ".join(self._acts))
 
     def emit(self, record: logging.LogRecord) -> None:
         """Take what the game logs: exceptions it has survived, and those of its processes."""
         text = self.format(record) if record.exc_info else record.getMessage()
-        if record.exc_info or not _is_told(text):
+        if record.exc_info or not _is_for_player(text):
             self.add(text)
 
     @contextmanager
@@ -111,8 +111,8 @@ class Faults(logging.Handler):
             log.removeHandler(self)
 
 
-def _is_told(trace: str) -> bool:
-    """Whether what ended a process is something that a player is told of, rather than a mistake in the code."""
+def _is_for_player(trace: str) -> bool:
+    """Whether what ended a process is something to show a player, rather than a mistake in the code."""
     name = trace.strip().splitlines()[-1].split(":")[0].rsplit(".", 1)[-1]
     kinds = [kind for root in _SAID for kind in (root, *_heirs(root))]
     return any(kind.__name__ == name for kind in kinds)
@@ -135,8 +135,8 @@ class Monkey:
         self.rng = np.random.default_rng(seed)
         self.visits: Counter[str] = Counter()
         self.entered: Counter[str] = Counter()
-        self.deeds: deque[str] = deque(maxlen=_TOLD)
-        self.faults = Faults(self.deeds)
+        self.acts: deque[str] = deque(maxlen=_LISTED)
+        self.faults = Faults(self.acts)
         self.events = self.games = 0
         self._folder, self._frames, self._last = folder, count(), ""
         self._goes_on, self._mouse, self._keys = True, (0, 0), list[int]()
@@ -153,7 +153,7 @@ class Monkey:
                 self._do_something()
             self.go_home()
             self._come_back()
-            for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
+            for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must last
                 self._pass_frame()
             stale = stale_scenes([*self._others, *self.app.scenes.stack])
             self._forgotten = stale if self._goes_on else []  # a game that was left draws no more
@@ -162,10 +162,10 @@ class Monkey:
     def _do_something(self) -> None:
         try:
             if self.rng.random() < (_JUMP_HOME if isinstance(self.app.scenes.top, MenuScene) else _JUMP):
-                self.deeds.append(self._jump())
+                self.acts.append(self._jump())
             else:
-                deed = list(DEEDS)[self.rng.choice(len(_CHANCES), p=_CHANCES)]
-                self.deeds.append(deed(self))
+                act = list(ACTS)[self.rng.choice(len(_CHANCES), p=_CHANCES)]
+                self.acts.append(act(self))
             all(self._pass_frame() for _ in range(int(self.rng.choice([0, 0, 1, 1]))))
         except Exception:
             self.faults.add("out of the game's own hands: " + traceback.format_exc())
@@ -393,13 +393,13 @@ class Monkey:
 
 
 # What is done, and how often beside the others.
-DEEDS: dict[Callable[[Monkey], str], float] = {
+ACTS: dict[Callable[[Monkey], str], float] = {
     Monkey._key: 24, lambda monkey: monkey._key(_OTHERS): 3, Monkey._let_go: 8, Monkey._type: 2, Monkey._click: 12,
     Monkey._drag: 3, Monkey._wheel: 3, Monkey._hover: 6, Monkey._wait: 0.5, Monkey._pad_button: 8, Monkey._pad_axis: 6,
     Monkey._plug: 0.3, Monkey._strange: 0.8, Monkey._come_back: 0.6, Monkey._resize: 0.05, Monkey._quit: 0.02,
     Monkey._damage: 0.15, Monkey._kill_child: 0.05,
 }  # fmt: skip
-_CHANCES = np.array(list(DEEDS.values())) / sum(DEEDS.values())
+_CHANCES = np.array(list(ACTS.values())) / sum(ACTS.values())
 
 
 def scenes_alive() -> list[Scene]:

@@ -50,7 +50,7 @@ def make(folder: Path) -> None:
             for message in read_po(file):
                 if message.id:
                     forms = (message.id,) if isinstance(message.id, str) else message.id
-                    told = tuple(map(accented, forms))
-                    made.add(message.id, told if len(told) > 1 else told[0], context=message.context)
+                    strings = tuple(map(accented, forms))
+                    made.add(message.id, strings if len(strings) > 1 else strings[0], context=message.context)
         with (folder / CODE / "LC_MESSAGES" / f"{domain}.mo").open("wb") as file:
             write_mo(file, made)

@@ -78,7 +78,7 @@ def rewound(driver: Driver) -> None:
     for _ in range(5):
         put_beside(run.earlier, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)), run.history.copy())
     driver.frames(20)
-    rewind.seek(run.history["decisions"][-1] / 2)
+    rewind.go_to(run.history["decisions"][-1] / 2)
     driver.frames(5)
 
 
@@ -154,7 +154,7 @@ def handed_in(driver: Driver) -> None:
 
 
 def answered(driver: Driver) -> None:
-    """Say what a stranger wrote."""
+    """Say what somebody else wrote."""
     handed_in(driver)
     driver.keys(pygame.K_RETURN, pygame.K_3)
     driver.frames(5)
@@ -181,7 +181,7 @@ def taken_apart(driver: Driver) -> None:
     driver.keys(*[pygame.K_PERIOD] * 5)
 
 
-def told(driver: Driver) -> None:
+def noted(driver: Driver) -> None:
     """Have a long message shown."""
     driver.app.context.note(texts.SETTINGS_UNREADABLE.format(reason=texts.FLIGHT_ACTIONS, name="/settings"))
     driver.frames(2)
@@ -255,7 +255,7 @@ STATES = [
     Stop("flights", "bringing it back", reset),
     Stop("the tutorial", settings={"tutored": False}),
     Stop("error"),
-    Stop("MenuScene", "a message", told),
+    Stop("MenuScene", "a message", noted),
     Stop("TrainScene", "all knobs", settings={"opened": "charts knobs more"}),
     Stop("TrainScene", "the laboratory", listed),
     Stop("TrainScene", "a guess", asked),

@@ -120,8 +120,8 @@ class Reading:
         for share in page.shares:
             assert abs(abs(share) / 100 - (flight.share if share > 0 else 1 - flight.share)) <= 0.01
         hint = texts.HINT_TAKE_BACK if flight.hand is StickHolder.NETWORK else texts.HINT_HAND_OVER
-        told = {texts.HINT_TAKE_BACK, texts.HINT_HAND_OVER} & set(page.words)
-        assert told <= ({hint} if flight.network and not flight.over else set()), page.words
+        shown = {texts.HINT_TAKE_BACK, texts.HINT_HAND_OVER} & set(page.words)
+        assert shown <= ({hint} if flight.network and not flight.over else set()), page.words
         return page
 
 

@@ -33,10 +33,10 @@ class Recorded:
 def _file() -> tuple[list[str], dict[str, tuple[dict[str, Any], np.ndarray]]]:
     """Names of the columns; every case with its table, by the name that it has today."""
     with np.load(FILE, allow_pickle=False) as arrays:
-        told = json.loads(str(arrays["described"]))
-        return told["columns"], {
+        described = json.loads(str(arrays["described"]))
+        return described["columns"], {
             " ".join(map(Config.name_now, name.split())): (case, arrays[name].T.astype(float))
-            for name, case in told["cases"].items()
+            for name, case in described["cases"].items()
         }
 
 

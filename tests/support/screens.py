@@ -153,7 +153,7 @@ def flown(context: Context) -> Record:
     return kept(context, landed(), time.time(), alone=True)
 
 
-def settle(context: Context, **settings: object) -> None:
+def save_settings(context: Context, **settings: object) -> None:
     """Save settings for the next game: without motion, and these."""
     for name, value in {"reduced_motion": True, "tutored": True, **settings}.items():
         setattr(context.settings, name, value)

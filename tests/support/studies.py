@@ -17,12 +17,12 @@ def tiny_plan(**changes):
     """Return a plan of runs of some tenths of a second each."""
     config = gym_config("CartPole-v1").changed(**TINY)
     space = knob_space(config, ["learning_rate", "tau"])
-    told = {
+    values = {
         "kind": "agent", "settings": json.loads(json.dumps(config.to_json())), "space": space, "seeds": (0, 1),
         "budget": 400, "every": 200, "metric": "return", "search": "tpe", "stop_early": False,
         "trials": 4, "validation": 5,
     }  # fmt: skip
-    return Plan(**(told | changes))
+    return Plan(**(values | changes))
 
 
 def run_alone(plan, asked, parent=None, runs=None):
@@ -50,9 +50,9 @@ def networks_in(folder: Path):
         if path.is_file():
             content = path.read_bytes()
             if path.name == "training.json":
-                told = json.loads(content)
-                del told["seconds"]
-                content = json.dumps(told).encode()
+                values = json.loads(content)
+                del values["seconds"]
+                content = json.dumps(values).encode()
             if path.suffix != ".npz":  # an archive tells when it was made; its numbers are compared as files
                 found[path.relative_to(folder).as_posix()] = content
     return found

@@ -81,11 +81,11 @@ class FixRunner:
         if self._worker is None:
             return None
         done: Fixed | None = None
-        for told in self._worker.poll():
-            if isinstance(told, Fixed):
-                self.fixed = done = told
+        for message in self._worker.poll():
+            if isinstance(message, Fixed):
+                self.fixed = done = message
             else:
-                self.step = told
+                self.step = message
         if done or self._worker.state in (WorkerState.ENDED, WorkerState.FAILED):
             self.problem = self._worker.problem or (
                 texts.FIX_NOT_KEPT.format(problem=done.problem) if done and done.problem else ""

@@ -20,7 +20,7 @@ from game.drawing.tokens import HUMAN, TITLE
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
 from game.scenes.digits.sums import describe_sum, figure
-from game.scenes.digits.unit_walk import UnitWalk, arrays_of, code_of, deed_of
+from game.scenes.digits.unit_walk import UnitWalk, arrays_of, code_of, sentence_of
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
@@ -111,7 +111,7 @@ class DigitInsideScene(PanelScene):
         walk = self.walk
         panel.text(texts.PATCH_TITLE, size=TITLE)
         self._tabs = panel.choice("", self._stages(), walk.number, self._choose)
-        panel.aside(deed_of(walk))
+        panel.aside(sentence_of(walk))
         panel.gap()
         left, middle, right = panel.beside((30, 40, 36), least=_LEAST)
         if walk.at_answer:
@@ -132,10 +132,10 @@ class DigitInsideScene(PanelScene):
         """Return the name of each stage, with what the followed unit gave there."""
         names = [*(texts.PATCH_STAGES[stage.kind] for stage in self.walk.stages), texts.PATCH_STAGES["answer"]]
         values = [self.walk.value(number) for number in range(len(names))]
-        told = ["" if value is None else figure(value) for value in values]
+        figures = ["" if value is None else figure(value) for value in values]
         if values[-1] is not None:
-            told[-1] = f"{100 * values[-1]:.1f}%"
-        return [f"{name} {value}".rstrip() for name, value in zip(names, told, strict=True)]
+            figures[-1] = f"{100 * values[-1]:.1f}%"
+        return [f"{name} {value}".rstrip() for name, value in zip(names, figures, strict=True)]
 
     def _describe_read(self, column: Column) -> None:
         inputs, first = self.walk.stage.inputs, self.walk.number == 0

@@ -162,7 +162,7 @@ class _Layer:
     def __init__(self, size: tuple[int, int], scale: float) -> None:
         self.scale = scale
         self.cover = np.zeros(size[::-1], np.float32)
-        self._painted: dict[Stroke, tuple[int, int]] = {}  # of each stroke: settled points, and all points
+        self._painted: dict[Stroke, tuple[int, int]] = {}  # of each stroke: fixed points, and all points
 
     def follow(self, strokes: tuple[Stroke, ...]) -> tuple[slice, slice] | None:
         """Paint what is new; return the rows and columns that changed, if any."""
@@ -188,12 +188,12 @@ class _Layer:
     def _pieces(self, stroke: Stroke) -> list[tuple[Point, Point, float]]:
         """Return the segments not painted yet: start, end and width, in pixels."""
         scale, path = self.scale, stroke.path
-        settled, count = self._painted.get(stroke, (0, 0))
-        if count == len(path) and settled == stroke.settled:
+        fixed, count = self._painted.get(stroke, (0, 0))
+        if count == len(path) and fixed == stroke.fixed:
             return []
-        self._painted[stroke] = (stroke.settled, len(path))
-        points = [(x * scale, y * scale) for x, y in path[settled:]]
-        widths = [width * scale for width in stroke.widths[settled:]]
+        self._painted[stroke] = (stroke.fixed, len(path))
+        points = [(x * scale, y * scale) for x, y in path[fixed:]]
+        widths = [width * scale for width in stroke.widths[fixed:]]
         if len(points) == 1:
             return [(points[0], points[0], widths[0])]
         return list(zip(points, points[1:], widths[1:], strict=False))
@@ -215,7 +215,7 @@ class Stroke:
     Attributes:
         path: the curve, as closely spaced points; it passes through every added point.
         widths: width of the pen at each point of the path.
-        settled: index up to which the path is final.
+        fixed: index up to which the path is final.
 
     """
 
@@ -224,7 +224,7 @@ class Stroke:
         self._pressure = 0.9
         self.path: list[Point] = [start]
         self.widths = [PEN_WIDTH * self._pressure]
-        self.settled = 0
+        self.fixed = 0
         self._points: npt.NDArray[np.float64] | None = None
 
     @property
@@ -241,10 +241,10 @@ class Stroke:
             return False
         self._points = None
         if len(self._added) > 1:
-            del self.path[self.settled + 1 :], self.widths[self.settled + 1 :]
+            del self.path[self.fixed + 1 :], self.widths[self.fixed + 1 :]
             before = self._added[-3] if len(self._added) > 2 else None
             self._extend(_curve(before, self._added[-2], last, point))
-            self.settled = len(self.path) - 1
+            self.fixed = len(self.path) - 1
         self._added.append(point)
         speed = min(math.dist(last, point) / _FASTEST, 1.0)
         self._pressure += _EASE * (_SLOW + (_FAST - _SLOW) * speed - self._pressure)

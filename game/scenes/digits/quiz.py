@@ -1,4 +1,4 @@
-"""Quiz scene: the player draws digits for the network and reads strangers' digits; both sides score."""
+"""Quiz scene: the player draws digits for the network and reads those of other people; both sides score."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ class QuizScene(PanelScene):
         super().__init__(context)
         self._classifier = classifier
         self._pen: PictureRow | None = None
-        self._strangers: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.uint8), np.zeros(0, np.uint8))
+        self._test_digits: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.uint8), np.zeros(0, np.uint8))
         try:
-            self._strangers = mnist_test(context.assets_dir)
+            self._test_digits = mnist_test(context.assets_dir)
         except MnistError as error:
             context.note(texts.QUIZ_NO_STRANGERS.format(problem=error))
         self.restart()
@@ -79,7 +79,7 @@ class QuizScene(PanelScene):
 
     def restart(self) -> None:
         """Start a new quiz."""
-        self.contest = QuizGame(self._classifier, *self._strangers, self.context.rng)
+        self.contest = QuizGame(self._classifier, *self._test_digits, self.context.rng)
         self._ask()
 
     def _ask(self) -> None:
@@ -187,7 +187,7 @@ class QuizScene(PanelScene):
             column.words([(str(digit), partial(self._read, digit)) for digit in range(10)])
 
     def _draw_track(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw what was read in each round: what the player drew above, what strangers wrote below."""
+        """Draw what was read in each round: what the player drew above, what other people wrote below."""
         for number, each in enumerate(self.contest.rounds):
             pitch = min(_PITCH[0], box.width / (ROUNDS / 2))
             place = (box.left + number // 2 * pitch, box.top + number % 2 * _PITCH[1])

@@ -1,4 +1,4 @@
-"""Quiz rules, without a screen: the network reads the player's digits, the player reads strangers' digits."""
+"""Quiz rules, without a screen: the network reads the player's digits, the player reads those of other people."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ai.digits.mnist import Pixels
 
 ROUNDS: Final = 10  # alternating: one drawn by the player, one read by the player
-_LOOKED_AT: Final = 300  # number of strangers' digits from which the hardest to read are chosen
+_LOOKED_AT: Final = 300  # number of other people's digits from which the hardest to read are chosen
 _AT_ONCE: Final = 4  # of them, in one frame
 
 
@@ -27,7 +27,7 @@ class QuizRound:
 
     Attributes:
         kind: whether the player draws and the network reads, or the player reads.
-        digit: the digit to draw, or the one that a stranger meant, once their image is found.
+        digit: the digit to draw, or the one that its writer meant, once their image is found.
         image: (28, 28), the image to read; None until it is drawn, or found.
         answer: the digit read by the network or the player, whoever reads; None until then.
         probabilities: (10,), the network's output for the image.
@@ -47,7 +47,7 @@ class QuizRound:
 
 
 class QuizGame:
-    """A quiz of ten rounds. Strangers' digits come from `images`, 0 to 255, and `labels`; without, all are drawn.
+    """A quiz of ten rounds. Digits to read come from `images`, 0 to 255, and `labels`; without, all are drawn.
 
     Attributes:
         rounds: all of them.
@@ -66,15 +66,15 @@ class QuizGame:
         self.place = 0
         wanted = rng.permutation(DIGITS)
         self.rounds = [QuizRound("draw", int(digit)) for digit in wanted]
-        strangers = self.rounds[1::2][: len(images)]
-        for each in strangers:
+        to_read = self.rounds[1::2][: len(images)]
+        for each in to_read:
             each.kind = "read"
         sample = rng.choice(len(images), _LOOKED_AT, replace=False) if len(images) > _LOOKED_AT else slice(None)
-        order = rng.permutation(len(strangers))
-        self._looking = self._find(strangers, images[sample], labels[sample], order)
+        order = rng.permutation(len(to_read))
+        self._looking = self._find(to_read, images[sample], labels[sample], order)
 
     def look(self) -> bool:
-        """Look for strangers' digits that are hard to read, a few at a time; return whether there are more to look at.
+        """Look for digits that are hard to read, a few at a time; return whether there are more to look at.
 
         The first is read after the player has drawn one, and all together take longer than a frame may last.
         """

@@ -160,7 +160,7 @@ def arrays_of(walk: UnitWalk) -> str:
     return ""
 
 
-def deed_of(walk: UnitWalk) -> str:
+def sentence_of(walk: UnitWalk) -> str:
     """Return what the stage looked at does, in a sentence."""
     if walk.at_answer:
         return texts.PATCH_SAYS["answer"]

@@ -197,8 +197,8 @@ class DownhillChapter(Chapter):
         self.tried = bool(self.results)
 
     def why(self) -> str:
-        told = texts.LEARN_DOWNHILL_WHY
-        return " ".join(told[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
+        templates = texts.LEARN_DOWNHILL_WHY
+        return " ".join(templates[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
 
     def code(self) -> Sequence[Code]:
         slope = float((self.plain if self.valley else self.line).slopes[0])
@@ -207,8 +207,8 @@ class DownhillChapter(Chapter):
         return [plain, adam, Code(Optimizer.step, "values")]
 
     def below(self, column: Column) -> None:
-        column.text(lambda: self._told(self.plain) if self.valley else self._step(), size=SMALL, colour=HUMAN)
-        column.text(lambda: self._told(self.adam) if self.valley else "", size=SMALL, colour=NET)
+        column.text(lambda: self._descent_words(self.plain) if self.valley else self._step(), size=SMALL, colour=HUMAN)
+        column.text(lambda: self._descent_words(self.adam) if self.valley else "", size=SMALL, colour=NET)
 
     def _step(self) -> str:
         """Return the cost of the ball's weight, the slope there, and the step."""
@@ -218,14 +218,14 @@ class DownhillChapter(Chapter):
         step = decimal(-slope * self.rate, 3, "+")
         return texts.LEARN_DOWNHILL_STEP.format(cost=cost, slope=decimal(slope, 2, "+"), rate=self.rate, step=step)
 
-    def _told(self, descent: Descent) -> str:
+    def _descent_words(self, descent: Descent) -> str:
         """Return how far a descent in the valley has come."""
         plain = descent is self.plain
         name = (texts.LEARN_DOWNHILL_PLAIN if plain else texts.LEARN_DOWNHILL_ADAM).format(
             rate=self.rate if plain else ADAM_RATE
         )
-        told = texts.LEARN_DOWNHILL_LOST if descent.lost else texts.LEARN_DOWNHILL_COST
-        return f"{name}: {told.format(cost=descent.costs[-1], steps=len(descent.costs) - 1)}"
+        template = texts.LEARN_DOWNHILL_LOST if descent.lost else texts.LEARN_DOWNHILL_COST
+        return f"{name}: {template.format(cost=descent.costs[-1], steps=len(descent.costs) - 1)}"
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         line = [(weight, cost) for (weight,), cost in zip(self.line.trail, self.line.costs, strict=True)]

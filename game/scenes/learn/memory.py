@@ -138,8 +138,8 @@ class MemoryChapter(RunsChapter):
             draw_landers(canvas, area, flown, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
             if share is not None:
-                told = texts.LEARN_RUNS_LANDED.format(share=percent(share))
-                canvas.text(told, (area.right - 10, area.top + 20), size=SMALL, align="right", tabular=True)
+                words = texts.LEARN_RUNS_LANDED.format(share=percent(share))
+                canvas.text(words, (area.right - 10, area.top + 20), size=SMALL, align="right", tabular=True)
 
     def _draw_wall(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the cells, the light of what was drawn from them, and where today begins."""

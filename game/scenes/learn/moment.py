@@ -174,23 +174,23 @@ class MomentChapter(Chapter):
 
     def why(self) -> str:
         last = self.judged[-1]
-        told = texts.LEARN_MOMENT_WHY.format(
+        sentence = texts.LEARN_MOMENT_WHY.format(
             guess=points(last.guess, 1), value=points(last.value, 1), came=points(last.came, 1),
             plain=points(last.plain, 1), decisions=last.decisions,
             last=f"{self.agent.config.discount ** (last.decisions - 1):.2f}",
         )  # fmt: skip
         if len(self.judged) == 1:
-            return told
+            return sentence
         said = [(each.guess, each.value) for each in self.judged]
         yours, its = np.abs(np.array(said) - [[each.came] for each in self.judged]).mean(axis=0)
-        return f"{told} {texts.LEARN_MOMENT_MISSED.format(count=len(self.judged), yours=yours, its=its)}"
+        return f"{sentence} {texts.LEARN_MOMENT_MISSED.format(count=len(self.judged), yours=yours, its=its)}"
 
     def code(self) -> Sequence[Code]:
-        config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
-        assert told.values is not None
-        assert told.points is not None
-        best = decimal(float(told.values.max()), 3)
-        scaled = f"{best} / {config.reward_scale:g} = {points(float(told.points.max()), 1)}"
+        config, decision = self.agent.config, self.judged[-1].decision if self.judged else self._first
+        assert decision.values is not None
+        assert decision.points is not None
+        best = decimal(float(decision.values.max()), 3)
+        scaled = f"{best} / {config.reward_scale:g} = {points(float(decision.points.max()), 1)}"
         asked = texts.LEARN_MOMENT_BEST.format(value=best)
         return [
             Code(DeepQAgent.q_values, NeuralNetwork.predict, {NeuralNetwork.predict: asked}),
@@ -284,7 +284,7 @@ class ChoiceChapter(MomentChapter):
         return 0 if not worst.landed else 1 if best.came - worst.came <= _ALIKE else 2
 
     def why(self) -> str:
-        told = " ".join(
+        sentences = " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
                 action=texts.said(ACTION_NAMES[action]), value=points(float(self.values[action]), 1),
                 came=points(came.came, 1),
@@ -293,7 +293,7 @@ class ChoiceChapter(MomentChapter):
         )  # fmt: skip
         best = self.results.get(self.best)
         surprises = best is not None and best.came < max(came.came for came in self.results.values())
-        return f"{told} {texts.LEARN_CHOICE_SURPRISE}" if surprises else told
+        return f"{sentences} {texts.LEARN_CHOICE_SURPRISE}" if surprises else sentences
 
     def code(self) -> Sequence[Code]:
         best = texts.said(ACTION_NAMES[self.best])

@@ -147,8 +147,8 @@ class NeuronChapter(Chapter):
     def why(self) -> str:
         seconds, weights = self.best
         tilt, spin, speed = (decimal(weight, 1, "+") for weight in weights)
-        told = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
-        return told.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
+        template = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
+        return template.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
 
     def code(self) -> Sequence[Code]:
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
@@ -179,8 +179,8 @@ class NeuronChapter(Chapter):
             canvas.line((world.left, y), (world.right, y), LINE)
             canvas.line((x, world.top), (x, world.bottom), LINE)
             self._lander.draw(canvas, view, alpha)
-        told = texts.LEARN_NEURON_FLIGHT[self.end if self._over else "flies"].format(seconds=self.seconds)
-        canvas.text(told, (box.left + 4, box.top + 18), size=SMALL, colour=MUTE, tabular=True)
+        words = texts.LEARN_NEURON_FLIGHT[self.end if self._over else "flies"].format(seconds=self.seconds)
+        canvas.text(words, (box.left + 4, box.top + 18), size=SMALL, colour=MUTE, tabular=True)
         self._draw_neuron(canvas, pygame.FRect(box.left, world.bottom, box.width, _NEURON * box.height))
 
     def _draw_neuron(self, canvas: Canvas, box: pygame.FRect) -> None:
@@ -190,13 +190,13 @@ class NeuronChapter(Chapter):
             zip(texts.LEARN_NEURON_INPUTS, self._products().tolist(), strict=True)
         ):
             y = box.top + box.height * (number + 0.6) / len(SENSES)
-            told = texts.LEARN_NEURON_PRODUCT.format(
+            words = texts.LEARN_NEURON_PRODUCT.format(
                 value=decimal(float(self.sensed[0, number]), 2, "+"), weight=decimal(self.weights[number], 1, "+"),
                 product=decimal(product, 2, "+"),
             )  # fmt: skip
             end = box.left + 0.6 * box.width
             canvas.text(name, (box.left + 4, y), size=SMALL, colour=MUTE, room=0.22 * box.width)
-            canvas.text(told, (end, y), size=SMALL, align="right", tabular=True)
+            canvas.text(words, (end, y), size=SMALL, align="right", tabular=True)
             canvas.line((end + 12, y - 4), neuron, NET, 1 + min(abs(product), 3.0), 0.6)
         canvas.glow(neuron, 40, NET, abs(self.output))
         canvas.dot(neuron, 16, NET, 0.25 + 0.75 * abs(self.output))

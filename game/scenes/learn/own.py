@@ -38,7 +38,7 @@ class Step(NamedTuple):
     """One step of the list: whether it is done, and what is known of it."""
 
     done: bool
-    told: str
+    sentence: str
 
 
 class OwnChapter(Chapter):
@@ -59,7 +59,7 @@ class OwnChapter(Chapter):
 
     def restart(self) -> None:
         self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
-        self.steps = {name: Step(done, told) for name, done, told in self._found()}
+        self.steps = {name: Step(done, sentence) for name, done, sentence in self._found()}
         self.tried = self.steps["train"].done
         self.complete = all(step.done for step in self.steps.values())
 
@@ -87,39 +87,43 @@ class OwnChapter(Chapter):
 
     def _found(self) -> Iterator[tuple[str, bool, str]]:
         """Yield each step's name, whether it is done, and what is known of it."""
-        told, runs, rescued, context = texts.LEARN_OWN_TOLD, self._runs, self._library.rescued(), self.context
+        sentences, runs, rescued, context = texts.LEARN_OWN_TOLD, self._runs, self._library.rescued(), self.context
         first = runs[0] if runs else rescued
         key = "trained" if runs else "unnamed" if rescued else "untrained"
         yield (
             "train",
             first is not None,
-            told[key].format(name=first.name if first else "", decisions=f"{first.decisions:,}" if first else ""),
+            sentences[key].format(name=first.name if first else "", decisions=f"{first.decisions:,}" if first else ""),
         )
 
         measured = [run for run in (*runs, rescued) if run and run.success is not None]
         best = max(measured, key=lambda run: run.success or 0.0, default=None)
         key = "unmeasured" if best is None else "landed_unnamed" if best is rescued else "landed"
         share = (best.success or 0.0) if best else 0.0
-        yield "land", share > 0, told[key].format(name=best.name if best else "", share=percent(share))
+        yield "land", share > 0, sentences[key].format(name=best.name if best else "", share=percent(share))
 
         folders = networks.folders(context.models_dir, context.user_dir)
         own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
         name = context.settings.model
-        yield "choose", name in own, told["chosen" if name in own else "shipped"].format(name=name or networks.DEFAULT)
+        yield (
+            "choose",
+            name in own,
+            sentences["chosen" if name in own else "shipped"].format(name=name or networks.DEFAULT),
+        )
 
         flown = self._records.entries()
         shared = next((entry for entry in reversed(flown) if entry.network in own and entry.human < 1.0), None)
         yield (
             "hand",
             shared is not None,
-            told["handed" if shared else "alone"].format(
+            sentences["handed" if shared else "alone"].format(
                 name=shared.network if shared else "", share=percent(1.0 - shared.human if shared else 0.0)
             ),
         )
 
         raced_at = Progress(context.settings).raced
         raced = raced_at is not None and any(entry.when >= raced_at for entry in flown)
-        yield "race", raced, told["raced" if raced else "unraced"]
+        yield "race", raced, sentences["raced" if raced else "unraced"]
 
         files = []
         with suppress(OSError):
@@ -128,17 +132,17 @@ class OwnChapter(Chapter):
         yield (
             "file",
             bool(pilot and pilot.landed >= LANDS),
-            told["flown" if pilot else "unwritten"].format(
+            sentences["flown" if pilot else "unwritten"].format(
                 name=pilot.name if pilot else "", share=percent(pilot.landed if pilot else 0.0)
             ),
         )
 
     def why(self) -> str:
         if not self._runs:
-            return self.steps["train"].told
+            return self.steps["train"].sentence
         run = self._runs[0]
-        told = texts.LEARN_OWN_WHY.format(name=run.name, seconds=run.seconds, decisions=f"{run.decisions:,}")
-        return f"{told} {self.steps['land'].told}"
+        sentence = texts.LEARN_OWN_WHY.format(name=run.name, seconds=run.seconds, decisions=f"{run.decisions:,}")
+        return f"{sentence} {self.steps['land'].sentence}"
 
     def code(self) -> Sequence[Code]:
         return [Code(Training.advance, DeepQAgent.train_step), Code(DeepQAgent.train_step), Code(DeepQAgent.learn)]
@@ -160,7 +164,7 @@ class OwnChapter(Chapter):
             else:
                 canvas.outline((x - 7, y - 7, 14, 14), 7, FAINT, 1.5)
         cursor.styled(texts.LEARN_OWN_STEPS[name], size, INK if step.done else MUTE, "light", indent=_INDENT)
-        cursor.styled(step.told, SMALL, HUMAN if step.done else MUTE, indent=_INDENT)
+        cursor.styled(step.sentence, SMALL, HUMAN if step.done else MUTE, indent=_INDENT)
         cursor.gap(14)
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:

@@ -130,8 +130,8 @@ class RunsChapter(Chapter):
 
     def history(self, run: int, name: str) -> Doubles:
         """Return a figure of one run after each decision, by the name of a field of `SmallState`; NaN for None."""
-        told = (getattr(states[run], name) for states in self.states)
-        return np.array([np.nan if value is None else value for value in told], dtype=float)
+        values = (getattr(states[run], name) for states in self.states)
+        return np.array([np.nan if value is None else value for value in values], dtype=float)
 
     def starter(self, column: Column, label: str) -> None:
         """Add the button that starts the runs; it is lit while none goes on."""
@@ -183,7 +183,7 @@ class DuelChapter(RunsChapter):
         """Return the name of a run, the right one with its choice."""
 
     @abstractmethod
-    def told(self, state: SmallState) -> str:
+    def caption(self, state: SmallState) -> str:
         """Return what is written beside a run's chart."""
 
     @abstractmethod
@@ -216,7 +216,7 @@ class DuelChapter(RunsChapter):
             self.draw_scale(canvas, chart)
             if state:
                 draw_curve(canvas, chart, self.heights(self.history(run, self.quantity)), colour, self.LENGTH)
-                canvas.text(self.told(state), (left, sky.bottom + 20), size=SMALL, tabular=True, room=half)
+                canvas.text(self.caption(state), (left, sky.bottom + 20), size=SMALL, tabular=True, room=half)
 
 
 EVERY: Final = (1, 10, 100, 1)  # gradient steps between two copies, to choose from; the last with normalised layers
@@ -267,8 +267,8 @@ class TargetChapter(DuelChapter):
     def why(self) -> str:
         (usual, other), (least, peak) = map(percent, self.landed), map(_figure, self.peaks)
         key = "ran" if self.peaks[1] > BOUND else "kept"
-        told = texts.LEARN_TARGET_WHY[key].format(peak=peak, usual=least, bound=f"{BOUND:g}")
-        return f"{told} {texts.LEARN_TARGET_LANDED.format(usual=usual, other=other)}"
+        sentence = texts.LEARN_TARGET_WHY[key].format(peak=peak, usual=least, bound=f"{BOUND:g}")
+        return f"{sentence} {texts.LEARN_TARGET_LANDED.format(usual=usual, other=other)}"
 
     def code(self) -> Sequence[Code]:
         discount = texts.LEARN_TARGET_DISCOUNT.format(discount=SMALL_RUN.discount)
@@ -279,7 +279,7 @@ class TargetChapter(DuelChapter):
             Code(DeepQAgent._update_target, "gradient_steps", {"gradient_steps": every}),
         ]
 
-    def told(self, state: SmallState) -> str:
+    def caption(self, state: SmallState) -> str:
         expects = texts.LEARN_TARGET_EXPECTS.format(points=_figure(state.value))
         return expects if state.landed is None else f"{expects}, {_landed(state)}"
 
@@ -340,7 +340,7 @@ class DaringChapter(DuelChapter):
     def code(self) -> Sequence[Code]:
         return [Code(DeepQAgent.act, "explore", {"explore": f"ε = {DARING[self.choice]:g}"}), Code(exploration)]
 
-    def told(self, state: SmallState) -> str:
+    def caption(self, state: SmallState) -> str:
         if state.landed is None:
             return texts.LEARN_RUNS_NOTHING
         return texts.LEARN_RUNS_FLIGHTS.format(count=state.flights, landed=_landed(state))

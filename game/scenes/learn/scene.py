@@ -49,7 +49,7 @@ class ChapterScene(PanelScene):
         # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
         guessed = self._progress.guess(key) is not None and not self._progress.done(key)
         self.page = TRY if guessed else PREDICT
-        self._function, self._told, self._code = 0, "", list[Code]()
+        self._function, self._why, self._code = 0, "", list[Code]()
         context.settings.chapter = key
         self._progress.note(key, done=self._progress.done(key) and self.chapter.complete)
         self.turn_to(self.page)
@@ -81,7 +81,7 @@ class ChapterScene(PanelScene):
 
     def reword(self) -> None:
         """Describe the page with the numbers of this moment: of what runs on they could not be read otherwise."""
-        self._told = self.chapter.why() if self.chapter.tried else ""
+        self._why = self.chapter.why() if self.chapter.tried else ""
         self._code = list(self.chapter.code()) if self.page == CODE and not self.chapter.problem else []
         self.build()
 
@@ -112,7 +112,7 @@ class ChapterScene(PanelScene):
     def update(self) -> Transition | None:
         if self.page != PREDICT and not self.chapter.problem:
             self.chapter.update()
-        if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._told):
+        if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._why):
             self.turn_to(WHY)  # what was begun on the page before has come to its end
         elif self.chapter.changed:
             self.build()
@@ -185,9 +185,9 @@ class ChapterScene(PanelScene):
     def _describe_why(self, column: Column) -> None:
         guess = self._progress.guess(self.key)
         if guess is not None:
-            column.add(partial(self._write_verdict, guess, self.chapter.verdict() if self._told else None))
+            column.add(partial(self._write_verdict, guess, self.chapter.verdict() if self._why else None))
         waits = texts.LEARN_STILL_RUNS if self.chapter.running else texts.LEARN_TRY_FIRST
-        column.text(self._told or waits, size=_BODY)
+        column.text(self._why or waits, size=_BODY)
         column.gap(8)
         for name in ("why", "differs"):
             column.text(self.chapter.words.get(name, ""), size=_BODY, colour=MUTE)
@@ -196,7 +196,7 @@ class ChapterScene(PanelScene):
     def _write_verdict(self, guess: int, came: int | None, cursor: Cursor) -> None:
         """Write the card of a guess: what was said, and what came of this very try."""
         answers, top = texts.LEARN_ANSWERS[self.key], cursor.y
-        open_words = texts.LEARN_UNDECIDED.get(self.key, "") if self._told else ""
+        open_words = texts.LEARN_UNDECIDED.get(self.key, "") if self._why else ""
         colour = MUTE
         if came is not None and cursor.canvas:
             colour = cursor.canvas.palette.good if came == guess else cursor.canvas.palette.warn

@@ -80,9 +80,9 @@ class AloneFrame(Frame):
         way.add(formula(self._figures))
         way.picture(_HEIGHT, self._draw_way)
         six.add(table(texts.LESSON_ALONE_HEAD, self._values))
-        column.text(self._told, size=SMALL, colour=MUTE)
+        column.text(self._result_words, size=SMALL, colour=MUTE)
 
-    def _told(self) -> str:
+    def _result_words(self) -> str:
         words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
         pulls = Pulls.of(self._step, self._lesson.derivative, self._moved)
         return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale))

@@ -20,7 +20,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.explain.figures import decimal, number, points
-from game.explain.tables import Line, table, told
+from game.explain.tables import Line, figure_rows, table
 from game.scenes.lesson.frame import Frame, in_points
 from game.ui.panel import Column
 from game.world.camera import HOME, POINTS_PER_METRE, View
@@ -60,7 +60,7 @@ def moment_frame(lesson: Lesson) -> Frame:
     units, cache = in_units(lesson.cell.state).tolist(), PaintCache()
     lines = [
         Line((name, sensed(value, feature), number(given)), texts.LESSON_INPUTS_HELP[feature],
-             told((texts.LESSON_IN_UNITS, sensed(value, feature)),
+             figure_rows((texts.LESSON_IN_UNITS, sensed(value, feature)),
                   (texts.LESSON_SCALED.format(scale=f"{OBSERVATION_SCALE[feature]:g}"),
                    number(float(lesson.cell.state[feature]))),
                   (texts.LESSON_GIVEN, number(given))))
@@ -134,5 +134,5 @@ def _decisions(flown: Flown, discount: float) -> list[Line]:
                  if paid[place]]  # fmt: skip
         factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
         cells = (said_action(action), points(pay), f"× {factor:.3f}", points(pay * factor))
-        lines.append(Line(cells, what, told(*parts, (texts.LESSON_IN_ALL, points(pay)))))
+        lines.append(Line(cells, what, figure_rows(*parts, (texts.LESSON_IN_ALL, points(pay)))))
     return lines

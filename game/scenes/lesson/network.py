@@ -17,7 +17,7 @@ from game.drawing.tokens import HUMAN, SMALL
 from game.explain.figures import number, points, signed
 from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
-from game.explain.tables import Line, table, told
+from game.explain.tables import Line, figure_rows, table
 from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep, Weight
 from game.ui.panel import Column
@@ -89,7 +89,7 @@ class NetworkFrame(Frame):
         """Explain a unit: its sum, and all that is made of it."""
         step = self.step
         if column == 0:
-            return told((texts.LESSON_SENSED, number(float(step.given(0)[unit]))))
+            return figure_rows((texts.LESSON_SENSED, number(float(step.given(0)[unit]))))
         link, stages, into = step.weights[column - 1], step.stages[column - 1], step.given(column - 1)
         products = into * link.weights[:, unit]
         strongest = np.argsort(-np.abs(np.nan_to_num(products)), kind="stable")[:_TERMS]
@@ -108,7 +108,7 @@ class NetworkFrame(Frame):
         if column == len(step.weights) and step.scale != 1.0:
             scaled = points(float(stages[-1][1][unit]) / step.scale)
             rows.append((texts.LESSON_IN_POINTS.format(scale=f"{step.scale:g}"), scaled))
-        return f"{texts.LESSON_SUM}\n{told(*rows)}"
+        return f"{texts.LESSON_SUM}\n{figure_rows(*rows)}"
 
 
 class GradientFrame(NetworkFrame):

@@ -20,7 +20,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, NET, SMALL
 from game.explain.figures import decimal, number, points, signed
-from game.explain.tables import Line, Part, formula, table, told
+from game.explain.tables import Line, Part, figure_rows, formula, table
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame, in_points, pulled
 from game.scenes.lesson.step import LearningStep, Pulls
@@ -52,13 +52,13 @@ def _sum(lesson: Lesson) -> list[Part]:
     steps, ended = int(lesson.cell.steps), bool(lesson.cell.terminal)
     target, pay, value = (float(each) / lesson.config.reward_scale
                           for each in (lesson.target, lesson.cell.reward, lesson.next_value))  # fmt: skip
-    whole = told(
+    whole = figure_rows(
         (texts.LESSON_PART_PAY, points(pay)),
         (texts.LESSON_PART_VALUE.format(factor=f"{lesson.discount:.4f}", value=points(value)),
          points(0.0 if ended else lesson.discount * value)),
         (texts.LESSON_TARGET, points(target)),
     )  # fmt: skip
-    factor = told((f"{lesson.config.discount:g}^{steps}", f"{lesson.discount:.4f}"))
+    factor = figure_rows((f"{lesson.config.discount:g}^{steps}", f"{lesson.discount:.4f}"))
     parts = [
         Part(points(target), texts.LESSON_TARGET, texts.LESSON_TARGET_HELP, whole),
         Part("="),
@@ -86,7 +86,7 @@ def _values(lesson: Lesson) -> list[Line]:
     low, span = float(shown.min()), max(float(np.ptp(shown)), 1e-9)
     return [
         Line((said_action(action), *map(points, row)), texts.LESSON_NEXT_HELP,
-             told((texts.LESSON_OWN_SCALE, " ".join(number(value * scale) for value in row))),
+             figure_rows((texts.LESSON_OWN_SCALE, " ".join(number(value * scale) for value in row))),
              lit=action == lesson.best, bars=[(value - low) / span for value in row])
         for action, row in enumerate(shown.tolist())
     ]  # fmt: skip
@@ -177,8 +177,8 @@ class ErrorFrame(Frame):
         for x, value, word, colour in ((here, predicted, texts.LESSON_PREDICTED, NET),
                                        (there, target, texts.LESSON_TARGET, HUMAN)):  # fmt: skip
             canvas.text(f"{word} {points(value)}", (x, y - 16), size=SMALL, colour=colour, align="centre", tabular=True)
-        told_error = f"{texts.LESSON_ERROR} {points(lesson.error / self._scale)}"
-        canvas.text(told_error, ((here + there) / 2, y + 22), size=SMALL, colour=MUTE, align="centre", tabular=True)
+        error_words = f"{texts.LESSON_ERROR} {points(lesson.error / self._scale)}"
+        canvas.text(error_words, ((here + there) / 2, y + 22), size=SMALL, colour=MUTE, align="centre", tabular=True)
         canvas.explain((ends[0], y - 6, ends[1] - ends[0], 12), texts.LESSON_ERROR_HELP)
 
     def _draw_curve(self, canvas: Canvas, box: pygame.FRect) -> None:
@@ -235,16 +235,16 @@ class AfterFrame(Frame):
         self.pulls = None if derivative is None else Pulls.of(step, derivative, values[1] - values[0])
         self._found = [pull / step.scale for pull in self.pulls or ()]  # in points, in the order of their texts
         closer = abs(before - target) - abs(after - target)
-        self._told = telling[closer <= 0].format(
+        self._result_words = telling[closer <= 0].format(
             before=write(before), after=write(after), target=write(target), by=number(abs(closer))
         )
         if self._found:
             strongest = int(np.argmax(np.abs(self._found)))
             name = texts.LESSON_PULL_PARTS[strongest][0].format(count=step.examples - (strongest > 0))
-            self._told = f"{self._told} {texts.LESSON_STRONGEST.format(name=name)}"
+            self._result_words = f"{self._result_words} {texts.LESSON_STRONGEST.format(name=name)}"
 
     def describe(self, column: Column) -> None:
-        column.text(self._told, size=SMALL)
+        column.text(self._result_words, size=SMALL)
         column.picture(_MOVED, self._draw_value)
         if self._found:
             column.gap(8)

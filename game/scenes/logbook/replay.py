@@ -119,8 +119,8 @@ class ReplayScene(FormScene):
             Action(Command.HANDOVER, self._take_over, texts.REPLAY_HINT_TAKE),
             self.form.goes_back(texts.HINT_BACK),
             *speeds,
-            Action(pygame.K_HOME, lambda: self.seek(0)),
-            Action(pygame.K_END, lambda: self.seek(self.flight_replay.length)),
+            Action(pygame.K_HOME, lambda: self.go_to(0)),
+            Action(pygame.K_END, lambda: self.go_to(self.flight_replay.length)),
         ]
         if on_strip or self.context.controls.gamepad_in_use:
             winds = ((Command.NEXT, 60), (Command.PREVIOUS, -60))
@@ -147,16 +147,16 @@ class ReplayScene(FormScene):
             self._fly()
         if not self.playback.stopped:
             self._heard.follow(self._scenery.stage.thrust[0])
-        self._scenery.breathe()
+        self._scenery.animate()
         outcome = self.form.update()
         self._lay_out()
         return outcome
 
     # Time
 
-    def seek(self, step: int) -> None:
+    def go_to(self, step: int) -> None:
         """Show another moment."""
-        self.flight_replay.seek(step)
+        self.flight_replay.go_to(step)
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
@@ -187,7 +187,7 @@ class ReplayScene(FormScene):
         self._futures.follow(_AHEAD)
 
     def _wind(self, steps: int) -> None:
-        self.seek(self.flight_replay.at + steps)
+        self.go_to(self.flight_replay.at + steps)
 
     @property
     def ended(self) -> bool:
@@ -218,7 +218,7 @@ class ReplayScene(FormScene):
         self._replay() if self.ended else self.playback.toggle()
 
     def _replay(self) -> None:
-        self.seek(0)
+        self.go_to(0)
         self.playback.stopped = False
 
     # Words
@@ -226,7 +226,7 @@ class ReplayScene(FormScene):
     def _build(self) -> None:
         recording = self.record.recording
         flown = recording.actions, recording.hands
-        self._strip = Timeline(self.form.manager, _STRIP, texts.REPLAY_LANES, *flown, self.seek, self._stop_or_go)
+        self._strip = Timeline(self.form.manager, _STRIP, texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go)
         self.form.add(self._strip)
         self._rows: list[Widget] = []
         self._describe()

@@ -13,7 +13,7 @@ from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, SMALL, TITLE
 from game.flight import sharing
-from game.flight.becoming import KINDS, curves, kind_of, said, tells
+from game.flight.becoming import KINDS, counts, curves, kind_of, said
 from game.flight.flight_file import Entry, Record
 from game.flight.friend import copy, paste
 from game.flight.logbook import Records, best
@@ -52,8 +52,8 @@ class LogbookScene(PanelScene):
         self._more = False  # whether the estimate is shown
         self.chosen: Entry | None = None
         self.enter()
-        told = [entry for entry in self._entries if tells(entry)] or self._entries
-        self._kind = kind_of(told[-1]) if told else KINDS[0]  # of the last flight that tells something
+        counted = [entry for entry in self._entries if counts(entry)] or self._entries
+        self._kind = kind_of(counted[-1]) if counted else KINDS[0]  # of the last flight that counts
 
     def enter(self) -> None:
         """Read the flights from disk, which the scene above may have changed."""

@@ -24,7 +24,7 @@ _COLOURS: Final = {StickHolder.HUMAN: HUMAN, StickHolder.NETWORK: NET}
 
 
 class Timeline(Widget):
-    """Lanes of a flight's actions (steps,) and who flew them; `on_seek` is called with the step to show."""
+    """Lanes of a flight's actions (steps,) and who flew them; `on_go_to` is called with the step to show."""
 
     def __init__(
         self,
@@ -33,12 +33,12 @@ class Timeline(Widget):
         words: Sequence[str],
         actions: Sequence[int],
         hands: Sequence[StickHolder],
-        on_seek: Callable[[int], None],
+        on_go_to: Callable[[int], None],
         on_press: Callable[[], None],
     ) -> None:
         super().__init__(manager, box, "")
         self._still = PaintCache()
-        self._words, self._on_seek, self._on_press = words, on_seek, on_press
+        self._words, self._on_go_to, self._on_press = words, on_go_to, on_press
         self.length = max(1, len(actions))
         self.at = self.reached = 0
         self._hands = runs([_COLOURS[hand] for hand in hands])
@@ -50,20 +50,20 @@ class Timeline(Widget):
         self._lanes = [[(start, stop, _LIT) for start, stop, on in runs(lane) if on] for lane in lit]
 
     def press(self) -> Transition | None:
-        """Pause or resume; the mouse only seeks."""
+        """Pause or resume; the mouse only goes to another step."""
         if self.ringed:
             self._on_press()
         return None
 
     def shift(self, direction: int) -> bool:
-        """Seek a tenth of a second."""
-        self._on_seek(self.at + _STEP * direction)
+        """Go a tenth of a second back or on."""
+        self._on_go_to(self.at + _STEP * direction)
         return True
 
     def drag(self, x: float) -> None:
-        """Seek to the mouse."""
+        """Go to the step under the mouse."""
         left, width = self.track
-        self._on_seek(round(self.length * (x - left) / width))
+        self._on_go_to(round(self.length * (x - left) / width))
 
     @property
     def track(self) -> tuple[float, float]:

@@ -95,9 +95,9 @@ class BindingCell(RowWidget):
         change()
         after, mine = self._bindings.table, self._meaning
         changed = [mine, *(each for each in after if each is not mine and after[each] != before[each])]
-        self._on_change("  ".join(self._told(each, before[each], after[each]) for each in changed))
+        self._on_change("  ".join(self._sentence(each, before[each], after[each]) for each in changed))
 
-    def _told(self, meaning: Meaning, before: tuple[int, ...], after: tuple[int, ...]) -> str:
+    def _sentence(self, meaning: Meaning, before: tuple[int, ...], after: tuple[int, ...]) -> str:
         lost = [self._word(code) for code in before if code not in after]
         words = texts.BINDINGS_LOST if lost else texts.BINDINGS_HAS
         keys = texts.BINDINGS_AND.join(map(self._word, after)) or texts.BINDINGS_NONE
@@ -117,8 +117,8 @@ class BindingCell(RowWidget):
         if self.typing:
             words, colour = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY, HUMAN
         else:
-            told = self._controls.gamepad_signs if self._for_pads else self._controls.key_names
-            words, colour = _BETWEEN.join(told(self._meaning)) or texts.BINDINGS_NONE, mix(MUTE, INK, self.warmth)
+            names = self._controls.gamepad_signs if self._for_pads else self._controls.key_names
+            words, colour = _BETWEEN.join(names(self._meaning)) or texts.BINDINGS_NONE, mix(MUTE, INK, self.warmth)
         styled = cursor.in_style(colour=colour)
         styled.text(words)
         cursor.y = styled.y

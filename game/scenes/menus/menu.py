@@ -105,10 +105,10 @@ class MenuScene(_OverMoon):
     def _write_line(self, cursor: Cursor) -> None:
         """Write where the word in focus leads to, and leave room for the longest of these lines."""
         width = min(cursor.width, _LINE_ROOM, _LINE_SHARE * self.context.reading().view.width)
-        told = [texts.MENU[name][1] for name in ROWS]
+        sentences = [texts.MENU[name][1] for name in ROWS]
         if self.form.focused:
-            replace(cursor, width=width, colour=MUTE).text(told[self.form.widgets.index(self.form.focused)])
-        longest = max(len(lines(each, TEXT, cursor.weight, width, cursor.scale)) for each in told)
+            replace(cursor, width=width, colour=MUTE).text(sentences[self.form.widgets.index(self.form.focused)])
+        longest = max(len(lines(each, TEXT, cursor.weight, width, cursor.scale)) for each in sentences)
         cursor.gap(longest * LEADING * TEXT + STEP + _BETWEEN * self._roominess)
 
     def _open(self, name: str) -> Transition:

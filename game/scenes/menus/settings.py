@@ -161,10 +161,10 @@ class SettingsScene(PanelScene):
 
     def _ask_to_reset(self) -> Transition:
         """Ask before all progress is put away, and say what that is."""
-        told = self._progress.told
+        figures = self._progress.figures
         more = " ".join([
-            texts.PROGRESS_FLIGHTS.format(count=told.flights), texts.PROGRESS_MEDALS.format(count=told.medals),
-            texts.PROGRESS_CHAPTERS.format(count=told.chapters), texts.PROGRESS_STAYS,
+            texts.PROGRESS_FLIGHTS.format(count=figures.flights), texts.PROGRESS_MEDALS.format(count=figures.medals),
+            texts.PROGRESS_CHAPTERS.format(count=figures.chapters), texts.PROGRESS_STAYS,
         ])  # fmt: skip
         answers = [(texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset)]
         return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, more, answers))

@@ -14,7 +14,7 @@ from game.scenes.physics.exhibit import CLEAR, Exhibit, Label, Quantity, height,
 from game.scenes.physics.falls import Bounce, DragRace, Slopes
 
 _SEED: Final = 3
-_SETTLED: Final = 60  # steps until contact impulses, which start at zero, carry ten boxes
+_AT_REST: Final = 60  # steps until contact impulses, which start at zero, carry ten boxes
 _TIMED: Final = 60  # steps over which a push is averaged
 _SQUARE: Final = 0.1  # tolerance of a box in a column: radians, and shares of a box's side
 _MOVES: Final = 0.05  # metres per second, from which a disc counts as moving
@@ -23,7 +23,7 @@ _MOVES: Final = 0.05  # metres per second, from which a disc counts as moving
 class Stack(Exhibit):
     """Three columns and a pyramid: the lowest contact carries every box above it. A ball to throw at them."""
 
-    name, patience = "stack", _SETTLED + _TIMED
+    name, patience = "stack", _AT_REST + _TIMED
     quantities = (Quantity("boxes", (2.0, 12.0), 10.0, 1.0), Quantity("iterations", (1.0, 20.0), 10.0, 1.0))
     tolerance = 0.07  # with a single iteration and a high column; 0.001 with 6 or more
     box = 0.8
@@ -52,15 +52,15 @@ class Stack(Exhibit):
     def observe(self) -> None:
         """Take the mean push of the ground under the first column, for as long as it stands."""
         first = self.columns[0]
-        if _SETTLED < self.steps <= self.patience and not self.is_touched(*first):
+        if _AT_REST < self.steps <= self.patience and not self.is_touched(*first):
             self._pushes += self.push(self.floor, first[0])
             if self.steps == self.patience:
                 self.result = self._pushes / _TIMED
 
     @property
     def state(self) -> str:
-        """State of the columns: two boxes or more, settled, are "standing"."""
-        if self.steps < _SETTLED and not self.touched.any():
+        """State of the columns: two boxes or more, at rest, are "standing"."""
+        if self.steps < _AT_REST and not self.touched.any():
             return "begun"
         return "standing" if len(self.standing()) > 1 else "fallen"
 

@@ -19,7 +19,7 @@ from game.ui.panel import Column
 
 _HEIGHT: Final = 190.0
 _CURVE: Final = 65  # places at which the law is evaluated
-_SEEN: Final = 5e-3  # share of the law's greatest value from which the reason for a difference is told
+_SEEN: Final = 5e-3  # share of the law's greatest value from which the reason for a difference is given
 _SMOOTHING: Final = 0.3
 _Run = tuple[type[Exhibit], float, tuple[tuple[str, float], ...]]  # of which exhibit, gravity, values
 
@@ -135,16 +135,16 @@ class LawPlot:
         if result is not None:
             apart = abs(result - self.law)
             first = texts.LAW_RESULT.format(law=self.law, measured=result, apart=apart, unit=self.unit)
-        told = [(first, INK)]
+        lines = [(first, INK)]
         if progress:
-            return [*told, (progress, MUTE)]
+            return [*lines, (progress, MUTE)]
         if self.points:
             share = self.worst / self.top if self.top else 0.0
             words = {"count": len(self.points), "apart": self.worst, "unit": self.unit, "percent": 100 * share}
-            told.append((texts.LAW_ALL.format(**words), MUTE))
+            lines.append((texts.LAW_ALL.format(**words), MUTE))
             if share > _SEEN and self._why:
-                told.append((self._why, MUTE))
-        return told
+                lines.append((self._why, MUTE))
+        return lines
 
 
 class RangeMeasurement:

@@ -225,7 +225,7 @@ class PhysicsScene(PanelScene):
             (texts.LAW_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             (texts.PHYSICS_MORE[self.more], self._open_more),
         ])  # fmt: skip
-        self._told: list[tuple[ButtonRow, str]] = list(
+        self._button_help: list[tuple[ButtonRow, str]] = list(
             zip(buttons, (what["start"], what["plot"], what["inside"]), strict=False)
         )
         column.gap()
@@ -342,7 +342,7 @@ class PhysicsScene(PanelScene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
-        for button, what in self._told:
+        for button, what in self._button_help:
             canvas.explain(button.box, what)
         self.explained.draw(canvas)
 

@@ -1,4 +1,4 @@
-"""One step of the engine, recorded while its own code runs on a copy of an exhibit, and told piece by piece.
+"""One step of the engine, recorded while its own code runs on a copy of an exhibit, and shown piece by piece.
 
 Nothing is computed a second time: arrays are copies of the local variables of the engine's functions, and the copy of
 the exhibit ends in the state that the exhibit itself would reach.
@@ -26,7 +26,7 @@ from game.scenes.physics.exhibit import Exhibit
 from game.world.grip import Grip
 
 NARROW: Final = (collide_polygons, collide_polygon_circle, collide_circles)  # by the number of circles of a pair
-# Functions that are recorded; of some, variables that are told beside the lines that set them, and on which axis a
+# Functions that are recorded; of some, variables that are shown beside the lines that set them, and on which axis a
 # pair has its row.
 _RECORDED: Final[dict[Callable[..., Any], tuple[int, tuple[str, ...]]]] = {
     BroadPhase.near: (0, ()),
@@ -253,7 +253,7 @@ class StepRecord:
             for column, row in enumerate(np.flatnonzero(contacts.colour == colour).tolist()):
                 yield Impulse(iteration + 1, row, column, call, contacts.body[row])
 
-    # Pieces, and what is told of them
+    # Pieces, and what is said of them
 
     def pieces(self, pair: Pair | None) -> list[Piece]:
         """Return the pieces of the step, as one pair of shapes goes through it; without one if none is near another."""

@@ -162,12 +162,12 @@ class ShownCard:
     def _write_share(self, rows: Cursor) -> None:
         """Write who flew how much, and how often the co-pilot stepped in."""
         card, canvas = self.card, rows.canvas
-        if told := card.told:
+        if sentence := card.stepped_in_words:
             rows.gap(4)
             top = rows.y
             if canvas:
                 canvas.marker("diamond", (rows.left + 6, rows.in_style(SMALL).baseline - 4), 8, NET)
-            rows.styled(told, SMALL, MUTE, indent=18)
+            rows.styled(sentence, SMALL, MUTE, indent=18)
             if canvas and card.watched:
                 canvas.explain((rows.left, top, rows.width, rows.y - top), texts.EXPLAIN_CARD_SAVED)
         rows.gap(18)

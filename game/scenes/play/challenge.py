@@ -59,7 +59,7 @@ class Challenge:
         total: points of the chain of flights that it is, for the logbook.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
         stake: question before another start, and what would be lost, while that is more than the present flight.
-        copy_hint: hint of the key that copies what a friend is told; empty for the usual words.
+        copy_hint: hint of the key that copies the text for a friend; empty for the usual words.
         next_hint: hint of the key for what comes next; empty where it does nothing.
         again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
@@ -142,7 +142,7 @@ class Challenge:
 
     # After a flight
 
-    def settle(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight, credit: Credit) -> None:
         """Take note of a flight that has just ended, before its card or the next flight."""
 
     def again(self) -> bool:
@@ -162,7 +162,7 @@ class Challenge:
         return ""
 
     def message(self, record: Record) -> tuple[str, str]:
-        """Return what a friend is told of a flight that is over, and what the player is told of that."""
+        """Return the text for a friend about a flight that is over, and the note for the player about it."""
         code = sharing.code(record)
         return code, texts.CODE_COPIED
 
@@ -297,7 +297,7 @@ class FlownMission(Challenge):
     def following(self) -> Challenge | None:
         return self._following() if self._following else None
 
-    def settle(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight, credit: Credit) -> None:
         """Keep a landing as the ghost of the next try."""
         if flight.outcome is Outcome.LANDED and flight.share > 0:
             self._rival, self._rival_name, self._landed = flight.recording, lambda: texts.GHOST_BEFORE, True

@@ -93,7 +93,7 @@ class DailyStart(Challenge):
         self._begun = True
         return ""
 
-    def settle(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight, credit: Credit) -> None:
         self.stake = None
 
     def written(self, entry: Entry) -> str:
@@ -107,7 +107,7 @@ class DailyStart(Challenge):
     def message(self, record: Record) -> tuple[str, str]:
         """Return the result in a line, which tells nothing of the way."""
         kind = "practice" if self.bar else "eased" if record.entry.barred else "first"
-        line = self._attempt(record.entry).told(kind)
+        line = self._attempt(record.entry).line_as(kind)
         return line, texts.CODE_LINE_COPIED.format(line=line)
 
     def _attempt(self, entry: Entry) -> Attempt:

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
 _FADES: Final = 24  # steps in which a new leg appears
-_GAUGE, _TOLD = 120.0, 220.0  # points of the gauge's width, and of the words over it
+_GAUGE, _WORDS = 120.0, 220.0  # points of the gauge's width, and of the words over it
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
 _ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
@@ -123,7 +123,7 @@ class Descent(Challenge):
             return Ghost(ReplayedFlight(self._before[number - 1]), lambda: texts.GHOST_BEFORE)
         return Ghost(Flight(seed, network, leg=self.start), partial(who, network)) if network else None
 
-    def settle(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight, credit: Credit) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank."""
         env = flight.env
         self._flown.append(flight.recording)
@@ -159,10 +159,10 @@ class Descent(Challenge):
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
         values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
         figures = tuple((label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True))
-        told = texts.DESCENT_NEW_BEST if best else credit.barred if self.bar else card.advice
+        advice = texts.DESCENT_NEW_BEST if best else credit.barred if self.bar else card.advice
         if float(flight.env.fuel[0]) >= flight.env.conditions.tank:
-            told = texts.DESCENT_EMPTY
-        return replace(card, figures=figures, score="", advice=told)
+            advice = texts.DESCENT_EMPTY
+        return replace(card, figures=figures, score="", advice=advice)
 
     # The picture
 
@@ -182,9 +182,9 @@ class Descent(Challenge):
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
-        (x, y), half = craft, _TOLD / 2
+        (x, y), half = craft, _WORDS / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
-        rows = Cursor(x - half, y - _CLEAR, _TOLD, canvas.scale, canvas)
+        rows = Cursor(x - half, y - _CLEAR, _WORDS, canvas.scale, canvas)
         relieved = sentence(texts.DESCENT_RELIEVED, self._relief)
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else relieved
         rows.in_style(TEXT, HUMAN if self._points else NET).text(words, "centre")

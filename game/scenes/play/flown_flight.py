@@ -145,10 +145,10 @@ class FlownFlight:
 
     # Time
 
-    def breathe(self) -> None:
+    def animate(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
         self.age += 1
-        self.scenery.breathe()
+        self.scenery.animate()
         self.help_words.shown = max(0, self.help_words.shown - 1)
 
     def due(self, action: int) -> bool:
@@ -208,8 +208,8 @@ class FlownFlight:
         if flight.wrecked and self._last_chance:
             self._last_chance.look(_SEARCH)
         self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
-        if told := self.challenge.follow(flight):
-            self.context.sound.play(told)
+        if sample := self.challenge.follow(flight):
+            self.context.sound.play(sample)
 
     def _follow_flight(self) -> None:
         flight, asks = self.flight, self._settings.show_thinking
@@ -224,7 +224,7 @@ class FlownFlight:
             self._last_chance.note(flight.env)
         if flight.over:
             self._readouts = at_touch(self._readouts, flight.env)
-            self.challenge.settle(flight, self.credit)
+            self.challenge.note_end(flight, self.credit)
 
     def sound(self) -> None:
         """Let the flight be heard; call it in every 1/60 s, between steps too, or fire would fall silent."""
@@ -293,7 +293,7 @@ class FlownFlight:
         if self.record:
             return None
         credit, challenge = self.credit, self.challenge
-        told = self._teach() if challenge.free and credit.bar != "practice" else ""
+        message = self._teach() if challenge.free and credit.bar != "practice" else ""
         entry = records.keep(
             self.flight,
             time.time(),
@@ -308,8 +308,8 @@ class FlownFlight:
         )
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
-        if told := told or challenge.written(entry) or records.problem:
-            self.context.note(told)
+        if message := message or challenge.written(entry) or records.problem:
+            self.context.note(message)
         return entry
 
     def _teach(self) -> str:

@@ -72,7 +72,7 @@ class FreeFlight(Challenge):
             return texts.LADDER_TITLE.format(number=rung + 1, count=COUNT), flown
         return texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown
 
-    def settle(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight, credit: Credit) -> None:
         """Move a rung up after a landing, and down after two misses in a row.
 
         Only flights that the player has brought to their end move it, with help or without.

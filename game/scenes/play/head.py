@@ -202,35 +202,35 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     """Return the words of a flight: all while there is time to read, which `whole` says, or the sentence."""
     flight, challenge, controls = flown.flight, flown.challenge, flown.context.controls
     waits, stuck, lamp = flown.waiting and not flight.over, flown.stuck, flown.interventions.lamp(flight)
-    told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck)
+    said = challenge.sentence(flight, controls, waiting=waits, stuck=stuck)
     helps = flown.help_words if flown.helps and not flight.over else None
     means = partial(_means, flown)
     if not (waits or whole or flight.over):
         usual = sentence(flight, flown.credit, flown.interventions.word, controls)
-        words, warns = (told, False) if told else usual
+        words, warns = (said, False) if said else usual
         return Head(words, warns, lamp, hints=hints, help=helps if flown.help_words.shown else None, means=means)
     if flown.ending.shown:
         return Head(hints=hints)
     caption, name = challenge.titles(flight, flown.network, whole=whole)
     head = Head(caption=caption, name=name, rung=rung_of(flight), aside=_asides(flown), hints=hints)
     if flight.over:
-        return replace(head, sentence=told or "")
+        return replace(head, sentence=said or "")
     if not waits:
         return replace(head, sentence=flown.credit.header, lamp=lamp)
     opening = challenge.opening
     if flown.begun:
         opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
-    keys = flight_hints(controls) if opening and told is None else []
+    keys = flight_hints(controls) if opening and said is None else []
     guided = [(texts.PATH_NETWORK.format(who=flown.credit.who), NET)] if flown.path_preview.asks else []
     paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
-    return replace(head, sentence=told or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
+    return replace(head, sentence=said or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
 
 
 def _asides(flown: FlownFlight) -> list[str]:
     """Say what else is to be known of the flight."""
     flight, challenge, credit = flown.flight, flown.challenge, flown.credit
     off = flown.helps and flown.helped.assist == 0 < flown.context.settings.assist
-    told = [
+    lines = [
         texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
         credit.header if credit.alone and not flight.over else "",
         credit.notice or challenge.goal,
@@ -238,7 +238,7 @@ def _asides(flown: FlownFlight) -> list[str]:
         *surroundings(flight.env),
         *challenge.asides(flight),
     ]
-    return [words for words in told if words]
+    return [words for words in lines if words]
 
 
 def _means(flown: FlownFlight) -> str:

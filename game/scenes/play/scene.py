@@ -127,7 +127,7 @@ class PlayScene(Scene):
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
-        self.flown.breathe()
+        self.flown.animate()
         self.explained.update()
         own.flying(self.context)
         self._away += self._away > 0

@@ -30,7 +30,7 @@ from game.scenes.play.words import falls_too_fast, leaves_at_the_top, turned
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
 _LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
-_TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
+_WHY_SHOWN: Final = 240  # steps in flight that the reason for a restart stays on the screen
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
 _LEAN: Final = 0.15  # rad
 _UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
@@ -317,7 +317,7 @@ class Tutorial(Challenge):
     @property
     def why(self) -> str:
         """Return why the lesson restarts, until it has flown for a while; empty if it has not restarted."""
-        return self._why if self._over or self._flown_for < _TOLD_WHY else ""
+        return self._why if self._over or self._flown_for < _WHY_SHOWN else ""
 
     def asides(self, flight: Flight) -> Sequence[str]:
         return [self.why] if self.why and not flight.wrecked else []

@@ -171,8 +171,8 @@ def why_not_saved(flight: Flight, last_chance: LastChance | None) -> str:
         words = texts.NOT_SAVED_BY_VALUES
     if last_chance is None or not words:
         return words
-    told = texts.LAST_CHANCE if last_chance.seconds is not None else texts.LAST_CHANCE_NONE
-    return f"{words} {told.format(seconds=f'{last_chance.seconds or 0.0:.1f}')}"
+    template = texts.LAST_CHANCE if last_chance.seconds is not None else texts.LAST_CHANCE_NONE
+    return f"{words} {template.format(seconds=f'{last_chance.seconds or 0.0:.1f}')}"
 
 
 def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:
@@ -206,7 +206,7 @@ def why_by_values(decision: SharedDecision, pad: int) -> Why:
         return title, *texts.COPILOT_PANEL_HANDS_OFF
     loss = float(points.max() - points[asked])
     name = texts.said(ACTION_NAMES[asked]).capitalize()
-    told = texts.COPILOT_PANEL_BELOW if loss >= _LEAST_LOSS else texts.COPILOT_PANEL_SAME
+    template = texts.COPILOT_PANEL_BELOW if loss >= _LEAST_LOSS else texts.COPILOT_PANEL_SAME
     flown = texts.COPILOT_PANEL_ENOUGH if source is ActionSource.PILOT else texts.COPILOT_PANEL_CHANGED
     action = texts.said(ACTION_NAMES[int(decision.action[0])])
-    return title, told.format(asked=name, loss=f"{loss:.1f}"), flown.format(flown=action)
+    return title, template.format(asked=name, loss=f"{loss:.1f}"), flown.format(flown=action)

@@ -11,7 +11,7 @@ from ai.training.hints import Adviser, Hint
 from game.core import texts
 from game.drawing.tokens import HUMAN, SMALL
 from game.training.run import TrainingRun
-from game.training.run_settings import told
+from game.training.run_settings import format_changes
 from game.ui.panel import Column
 
 
@@ -51,7 +51,7 @@ class Advice:
         run = self._run
         self._hint = self.adviser.advise(run.history, run.config, health.dead_share, health.clipped_share)
 
-    def hush(self, quiet: bool) -> None:
+    def silence(self, quiet: bool) -> None:
         """Hide the hint while other changes wait to be applied or undone: one question at a time."""
         if quiet != self._quiet:
             self._quiet = quiet
@@ -67,7 +67,7 @@ class Advice:
         """Add the hint, or what its remedy did, with the words that answer it."""
         hint = self._hint
         column.caption(texts.HINT_TITLE if hint else texts.HINT_APPLIED)
-        said = texts.HINTS[hint.name].format(what=told(hint.remedy)) if hint else self.done
+        said = texts.HINTS[hint.name].format(what=format_changes(hint.remedy)) if hint else self.done
         column.text(said, size=SMALL, colour=HUMAN)
         if hint is None:
             column.words([(texts.HINT_UNDO, self._undo), (texts.HINT_KEEP, self._keep)])
@@ -80,7 +80,7 @@ class Advice:
         back_to = self._hint.back_to
         remedy = self.adviser.apply(went_back=back_to is not None)
         went = [] if back_to is None else [texts.HINT_WENT_BACK.format(count=back_to)]
-        self.done = ", ".join([*([told(remedy)] if remedy else []), *went])
+        self.done = ", ".join([*([format_changes(remedy)] if remedy else []), *went])
         self._came_from = None if back_to is None else int(self._run.history["decisions"][-1])
         self._set(remedy, back_to)
 

@@ -24,7 +24,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.record import EarlierRun
-from game.training.run_settings import figure, label, told
+from game.training.run_settings import figure, format_changes, label
 from game.ui.chart import Chart, Series, Tick
 from game.ui.charts import Charts
 from game.ui.curves import run_style
@@ -185,7 +185,7 @@ class TrainingCharts(Charts):
         self.moment: int | None = None
         self.mark(None)
         self.zoom.reset()
-        self._told: list[object] = [None] * len(self._all)  # what is shown in each chart
+        self._contents: list[object] = [None] * len(self._all)  # what is shown in each chart
 
     def measure_by(self, axis: int) -> None:
         """Switch the charts to another horizontal axis."""
@@ -209,11 +209,11 @@ class TrainingCharts(Charts):
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
-        told = (len(history), len(history.validations), shown, self.axis, self.zoom.shown,
+        contents = (len(history), len(history.validations), shown, self.axis, self.zoom.shown,
                 len(history.setting_changes))  # fmt: skip
-        if self._told[number] == told:
+        if self._contents[number] == contents:
             return False
-        self._told[number] = told
+        self._contents[number] = contents
         name = list(self._kinds)[number]
         compared = runs[:1] if name == SCORE and beside.paid_otherwise else runs
         self._set(name, self.charts[number], compared, say(name))
@@ -307,7 +307,7 @@ def ticks_of(history: History) -> list[Tick]:
         seconds = _seconds_of(change, history)
         if not together or seconds - together[-1][0] >= _TOGETHER:
             together.append((seconds, []))
-        together[-1][1].append(_told(change))
+        together[-1][1].append(_change_words(change))
     return [*ticks, *(Tick(seconds, _listed(words), "knob") for seconds, words in together)]
 
 
@@ -323,7 +323,7 @@ def _listed(words: Sequence[str]) -> str:
     return few if len(words) <= _FEW else texts.TRAIN_TURNED_MORE.format(few=few, count=len(words) - _FEW)
 
 
-def _told(change: SettingChange) -> str:
+def _change_words(change: SettingChange) -> str:
     if change.name == EDITED:
         return texts.EDIT_TICK.format(count=change.after) if change.after else texts.EDIT_TICK_BACK
     if change.name == TAUGHT:
@@ -331,4 +331,4 @@ def _told(change: SettingChange) -> str:
     if change.name == REVERTED:
         return texts.TRAIN_REVERTED
     part = "." in change.name
-    return told({change.name: change.after}) if part else f"{label(change.name)} {figure(change.after)}"
+    return format_changes({change.name: change.after}) if part else f"{label(change.name)} {figure(change.after)}"

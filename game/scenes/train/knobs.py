@@ -171,7 +171,7 @@ class KnobsPanel:
         knob = self._knobs.get(name)
         if knob is None or knob not in self._form.widgets:
             description = self._descriptions[name]
-            knob = KINDS[description.kind](self._form.manager, description, self.turn, self._seek)
+            knob = KINDS[description.kind](self._form.manager, description, self.turn, self._focus_answer)
             self._knobs[name] = knob
         return knob
 
@@ -214,9 +214,9 @@ class KnobsPanel:
             small = cursor.in_style(SMALL, HUMAN)
             small.text(texts.KNOBS_NEW_PAY)
             cursor.y = small.y
-        for heading, told in zip(texts.KNOB_ADVICE_NAMES, knob.description.advice, strict=False):
-            if told and self.every:
-                cursor.aside(f"{heading}: {told}")
+        for heading, advice in zip(texts.KNOB_ADVICE_NAMES, knob.description.advice, strict=False):
+            if advice and self.every:
+                cursor.aside(f"{heading}: {advice}")
         if not knob.live:
             cursor.aside(texts.KNOBS_NEW_RUN)
         if knob.changed:
@@ -233,7 +233,7 @@ class KnobsPanel:
     def _turn_page(self, page: int) -> None:
         self._page = page
 
-    def _seek(self) -> None:
+    def _focus_answer(self) -> None:
         """Move the focus to the button that applies, if there is one."""
         answers = (texts.KNOBS_APPLY, texts.KNOBS_UNDO)
         if answer := next((widget for widget in self._form.widgets if widget.label in answers), None):

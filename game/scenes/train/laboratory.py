@@ -118,8 +118,8 @@ class Laboratory:
         column.text(texts.TRAIN_EXPERIMENTS, size=TITLE)
         column.aside(texts.LAB_INTRODUCED)
         for name in SABOTAGES:
-            word, told = texts.SABOTAGES[name]
-            column.button(word, partial(self._ask, name, word), told, colour=INK)
+            word, what = texts.SABOTAGES[name]
+            column.button(word, partial(self._ask, name, word), what, colour=INK)
         for knob in (each for each in LANDERS.knob_descriptions if each.name in self._knobs.first):
             column.aside(texts.LAB_TURN.format(knob=knob.label))
             column.words([
@@ -177,7 +177,7 @@ class Laboratory:
         column.caption(texts.LAB_CAME)
         column.text(self._figures, size=SMALL, colour=INK)
         for subject, colour in (("came", NET), ("why", INK), ("measured", MUTE)):
-            column.text(partial(self._told, subject), size=SMALL, colour=colour)
+            column.text(partial(self._sentence, subject), size=SMALL, colour=colour)
         column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
         column.words([
             (texts.LAB_KEEP_RUN, partial(self._leave, False)),
@@ -185,7 +185,7 @@ class Laboratory:
             (texts.LAB_KNOBS, self.close),
         ])  # fmt: skip
 
-    def _told(self, subject: str) -> str:
+    def _sentence(self, subject: str) -> str:
         return self.said[subject]
 
     def _figures(self) -> str:
@@ -244,5 +244,5 @@ def measured(name: str) -> str:
     """Say what was measured of a sabotage, beside the preset that nothing was taken from."""
     found = measurements()
     other, healthy = ([100 * part for part in found["shares"][each]] for each in (name, MEASURED))
-    told = dict(zip(("other", "low", "high", "healthy", "least", "most"), (*other, *healthy), strict=True))
-    return texts.LAB_MEASURED.format(decisions=found["decisions"], seeds=found["seeds"], **told)
+    figures = dict(zip(("other", "low", "high", "healthy", "least", "most"), (*other, *healthy), strict=True))
+    return texts.LAB_MEASURED.format(decisions=found["decisions"], seeds=found["seeds"], **figures)

@@ -168,7 +168,7 @@ class NetworksScene(PanelScene):
 
     @property
     def verbs(self) -> list[tuple[str, OnPress]]:
-        """What can be done with the chosen run, in words and deeds."""
+        """What can be done with the chosen run, in words, and what each does."""
         run, verbs = self.chosen, list[tuple[str, OnPress]]()
         if run is None:
             return verbs
@@ -293,10 +293,10 @@ def write_headings(words: Sequence[str], columns: Sequence[float], cursor: Curso
     cursor.gap(LEADING * LABEL)
 
 
-def _result(deed: Callable[[], str]) -> str:
+def _result(operation: Callable[[], str]) -> str:
     """Perform an operation on the library; return what it says of its success, or why it failed."""
     try:
-        return deed()
+        return operation()
     except LibraryError as error:
         return str(error)
 

@@ -58,7 +58,7 @@ class Rewind:
     def _end(self) -> float:
         return float(self._run.history["decisions"][-1]) if len(self._run.history) else 0.0
 
-    def seek(self, decisions: float) -> None:
+    def go_to(self, decisions: float) -> None:
         """Show the kept moment nearest to one in decisions; from the last one on, show now."""
         run = self._run
         self.clear()
@@ -71,9 +71,9 @@ class Rewind:
             self.moment = self.swarm_state.decisions
         self.network_state = self._network_at(self.moment)
 
-    def seek_share(self, share: float) -> None:
+    def go_to_share(self, share: float) -> None:
         """Show the moment at a share of the run, from 0 to 1, which is now."""
-        self.seek(share * self._end)
+        self.go_to(share * self._end)
 
     def shift(self, direction: int) -> None:
         """Go a hundredth of the run back (-1) or on (1)."""
@@ -84,7 +84,7 @@ class Rewind:
         here = self._end if self.moment is None else self.moment
         before, after = np.searchsorted(known, here, "left") - step, np.searchsorted(known, here, "right") - 1 + step
         goal = int(before if direction < 0 else after)
-        self.seek(float(known[max(goal, 0)]) if goal < len(known) else self._end)
+        self.go_to(float(known[max(goal, 0)]) if goal < len(known) else self._end)
 
     def _moments(self) -> Doubles:
         """Return all moments to be shown, rising: of the landers, and before those were kept, of the curves."""
@@ -136,7 +136,7 @@ class _Timeline(SliderRow):
 
     def __init__(self, manager: PointsManager, rewind: Rewind) -> None:
         super().__init__(
-            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.seek_share, step=0.001,
+            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.go_to_share, step=0.001,
             figure=rewind.seconds_at,
         )  # fmt: skip
         self._rewind = rewind

@@ -151,7 +151,7 @@ class TrainScene(TrainingScene):
         if isinstance(place, int):
             self.rewind.shift(place)
         else:
-            self.rewind.seek(self.charts.decisions_at(place))
+            self.rewind.go_to(self.charts.decisions_at(place))
 
     def _describe(self, column: Column) -> None:
         self._legend = []
@@ -231,7 +231,7 @@ class TrainScene(TrainingScene):
         """Receive the worker's messages, and animate the screen."""
         run, still = self.run, self._settings.reduced_motion
         looked = self._listen_to_swarm()
-        self._advice.hush(bool(self.knobs.settings.waiting) or run.twin is not None)
+        self._advice.silence(bool(self.knobs.settings.waiting) or run.twin is not None)
         if not run.alive:
             self._advice.clear()
         else:

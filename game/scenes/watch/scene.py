@@ -68,7 +68,7 @@ class WatchScene(FormScene):
         self.world = Watched(context)
         self.playback = self.world.playback
         self.explained = Explained()
-        self.problem = self._wanted = self._told = ""
+        self.problem = self._wanted = self._message = ""
         self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
         self._valued = True  # whether who flies gives values
         self._settings = context.settings
@@ -107,7 +107,7 @@ class WatchScene(FormScene):
             self.world.set_up_camera()
 
     def reword(self) -> None:
-        self._told = ""
+        self._message = ""
         self._describe(self._model_choice.index)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -220,7 +220,7 @@ class WatchScene(FormScene):
 
     def _touch(self) -> None:
         """Stop with a hand on the lander; the mouse takes it without that."""
-        self.playback.stopped, self._told = True, ""
+        self.playback.stopped, self._message = True, ""
         if not self.context.controls.mouse_in_use:
             self.form.focus(self.hand)
             self.hand.hold()
@@ -231,7 +231,7 @@ class WatchScene(FormScene):
         def runs() -> Transition | None:
             outcome = run()
             said = value()
-            self._told = f"{what.capitalize()}: {said}" if said else what.capitalize()
+            self._message = f"{what.capitalize()}: {said}" if said else what.capitalize()
             return outcome
 
         return runs
@@ -373,7 +373,7 @@ class WatchScene(FormScene):
         elif self.playback.stopped:
             words(texts.TOUCH_INVITES, (middle, 84), colour=MUTE)
         if self.playback.stopped:
-            words(self._told, (middle, 102), colour=INK)
+            words(self._message, (middle, 102), colour=INK)
 
     def _problem(self) -> str:
         """Return what is wrong with a network that was chosen, or with the player's own file."""

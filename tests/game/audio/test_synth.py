@@ -44,7 +44,7 @@ def test_a_gliding_sine_goes_from_one_frequency_to_the_other():
     assert spectrum(end)[0][spectrum(end)[1].argmax()] == pytest.approx(222, abs=5)
 
 
-def test_partials_die_away_as_told():
+def test_partials_die_away_as_asked():
     signal = synth.partials(440, ((1, 0.5, 1.0),), 1.0)
     early, late = np.abs(signal[: RATE // 20]).max(), np.abs(signal[-RATE // 20 :]).max()
     assert decibels(late / early) == pytest.approx(-57, abs=2)
@@ -84,10 +84,10 @@ def test_a_choir_lies_around_its_harmonics_and_goes_round():
     assert seam(loop) < 5
 
 
-def test_a_loop_breathes_by_the_depth_and_as_often_as_told():
+def test_a_loop_swells_by_the_depth_and_as_often_as_asked():
     steady = np.zeros(1001, complex)
     steady[600] = 1  # a sine of 300 Hz for two seconds
-    loop = synth.looped(synth.breathe(steady, 3, 0.5, 0.0), 2.0)
+    loop = synth.looped(synth.swell(steady, 3, 0.5, 0.0), 2.0)
     swell = np.abs(loop).reshape(-1, RATE // 50).max(axis=1)
     assert swell.max() / swell.min() == pytest.approx(3, rel=0.05)  # 1.5 to 0.5
     assert np.abs(np.fft.rfft(swell))[1:].argmax() + 1 == 3

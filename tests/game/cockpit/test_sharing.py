@@ -144,7 +144,7 @@ def test_a_landing_on_any_of_three_pads_counts_and_read_outs_turn_to_it():
         assert flight.env.target[0] == number
 
 
-def test_the_network_flies_to_the_nearest_pad_when_nothing_tells_another():
+def test_the_network_flies_to_the_nearest_pad_when_nothing_says_another():
     flight = Flight(4, Wants(), pads=3)
     pads = flight.env.ground.pads
     for number, pad in enumerate(pads):

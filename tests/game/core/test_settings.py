@@ -200,7 +200,7 @@ def test_a_change_never_waits_for_the_disk(tmp_path: Path, monkeypatch: pytest.M
     assert SettingsFile(tmp_path).load().assist == 19 / 20
 
 
-def test_a_full_disk_is_told_once_and_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_full_disk_is_reported_once_and_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     writer, settings = opened(tmp_path)
     settings.colour_safe = True
     with monkeypatch.context() as patch:

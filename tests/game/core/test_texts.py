@@ -140,7 +140,7 @@ def test_a_language_matches_the_english(path: Path):
 
 
 @pytest.mark.parametrize(
-    ("told", "fault"),
+    ("translated", "fault"),
     [
         ({"SCREENSHOT_SAVED": "Bild gespeichert: {pfad}"}, "braces"),
         ({"SCREENSHOT_SAVED": "Bild gespeichert"}, "braces"),
@@ -150,11 +150,11 @@ def test_a_language_matches_the_english(path: Path):
         ({"WATCH_LANDERS": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
     ],
 )
-def test_faults_of_a_language_are_found(told: dict[str, str | tuple[str, ...]], fault: str):
+def test_faults_of_a_language_are_found(translated: dict[str, str | tuple[str, ...]], fault: str):
     template, german = english(), Catalog(locale="de")
     for message in template:
-        if message.context in told:
-            german.add(message.id, told[message.context], context=message.context)
+        if message.context in translated:
+            german.add(message.id, translated[message.context], context=message.context)
     found = list(translations.faults(german))
     assert len(found) == bool(fault)
     assert all(fault in each for each in found)
@@ -163,8 +163,8 @@ def test_faults_of_a_language_are_found(told: dict[str, str | tuple[str, ...]], 
 def test_a_translation_follows_the_english():
     """By its name: one that was made from other English is kept, and named, and not shown; one that is gone goes."""
     german, now = Catalog(locale="de"), Catalog(locale="de")
-    for name, said, told in (("A", "Same", "Gleich"), ("B", "Before", "Vorher"), ("C", "Gone", "Weg")):
-        german.add(said, told, context=name)
+    for name, said, translation in (("A", "Same", "Gleich"), ("B", "Before", "Vorher"), ("C", "Gone", "Weg")):
+        german.add(said, translation, context=name)
     for name, said in (("A", "Same"), ("B", "After"), ("D", "New")):
         now.add(said, context=name)
     merged = translations.merged(german, now)
@@ -206,10 +206,10 @@ def test_what_the_game_reads_is_what_babel_makes_of_what_people_write():
         assert contents(read_mo(file)) == contents(translations.english())
     assert contents(translations.template("ai")) == contents(translations.of_ai())
     for path in folder.glob("*/LC_MESSAGES/*.po"):
-        kept = {key: told for key, told in contents(translations.translations(path)).items() if any(told)}
+        kept = {key: text for key, text in contents(translations.translations(path)).items() if any(text)}
         with path.with_suffix(".mo").open("rb") as file:
             read = contents(read_mo(file))
-        assert {key: told for key, told in read.items() if told != key[1]}.items() <= kept.items()  # or English
+        assert {key: text for key, text in read.items() if text != key[1]}.items() <= kept.items()  # or English
     assert translations.STUB.read_text(encoding="utf-8") == translations.stub(catalogue.read(folder))
 
 
@@ -230,12 +230,12 @@ def test_every_babel_writes_the_same_bytes(tmp_path: Path, monkeypatch: pytest.M
 def german(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, object]]:
     """The texts in German, of which so much is translated."""
 
-    def read(**told: str | tuple[str, ...]) -> dict[str, object]:
+    def read(**translated: str | tuple[str, ...]) -> dict[str, object]:
         copytree(catalogue.LOCALE / "en", tmp_path / "en")
         made = Catalog(locale="de")
         for message in english():
-            if message.context in told:
-                made.add(message.id, told[message.context], context=message.context)
+            if message.context in translated:
+                made.add(message.id, translated[message.context], context=message.context)
         (tmp_path / "de" / "LC_MESSAGES").mkdir(parents=True)
         translations.write_compiled(tmp_path / "de" / "LC_MESSAGES" / "tranquility.mo", made)
         monkeypatch.setenv("LANGUAGE", "de_AT:en")

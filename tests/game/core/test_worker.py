@@ -53,33 +53,33 @@ def start():
 
 def polled(worker, until):
     """Poll until `until(messages so far)` holds; return the messages."""
-    told, deadline = [], time.monotonic() + LIMIT
-    while not until(told):
-        assert time.monotonic() < deadline, f"waited in vain: {worker.state} {worker.problem} {told[-3:]}"
+    messages, deadline = [], time.monotonic() + LIMIT
+    while not until(messages):
+        assert time.monotonic() < deadline, f"waited in vain: {worker.state} {worker.problem} {messages[-3:]}"
         time.sleep(0.002)
-        told += worker.poll()
-    return told
+        messages += worker.poll()
+    return messages
 
 
 def over(worker):
     return polled(worker, lambda _: worker.state in (WorkerState.ENDED, WorkerState.FAILED))
 
 
-def ticks(told):
-    return [each.number for each in told if isinstance(each, Tick)]
+def ticks(messages):
+    return [each.number for each in messages if isinstance(each, Tick)]
 
 
-def settled(worker):
+def caught_up(worker):
     """Poll until a command comes back: whatever was ordered before it has been done."""
-    worker.send("settle")
-    return polled(worker, lambda told: Echo("settle") in told)
+    worker.send("catch up")
+    return polled(worker, lambda messages: Echo("catch up") in messages)
 
 
 def test_every_message_comes_once_and_in_order(start):
     counter = start(chores.counting, 400)
     assert counter.state.name == "STARTING"
-    told = over(counter)
-    assert ticks(told) == list(range(400))
+    messages = over(counter)
+    assert ticks(messages) == list(range(400))
     assert counter.state is WorkerState.ENDED
     assert counter.problem == ""
 
@@ -88,9 +88,9 @@ def test_of_a_class_that_is_newest_only_the_latest_comes(start):
     counter = start(chores.counting, 300)
     while multiprocessing.active_children():  # nobody asks while it counts
         time.sleep(0.002)
-    told = over(counter)
-    assert ticks(told) == list(range(300))
-    latest = [each.number for each in told if isinstance(each, Latest)]
+    messages = over(counter)
+    assert ticks(messages) == list(range(300))
+    latest = [each.number for each in messages if isinstance(each, Latest)]
     assert len(latest) <= CREDIT + 1
     assert latest[-1] == 299
     assert latest == sorted(latest)
@@ -100,11 +100,11 @@ def test_what_waits_for_long_is_thinned_where_it_may_be():
     waiting = MessageQueue()
     for number in range(10 * MOST_WAITING):
         waiting.add([Trace(number)] + [Tick(number)] * (number % 1000 == 0))
-    told = waiting.take()
-    traces = [each.number for each in told if isinstance(each, Trace)]
+    messages = waiting.take()
+    traces = [each.number for each in messages if isinstance(each, Trace)]
     assert MOST_WAITING / 4 < len(traces) <= MOST_WAITING
     assert traces == sorted(traces)
-    assert ticks(told) == list(range(0, 10 * MOST_WAITING, 1000))
+    assert ticks(messages) == list(range(0, 10 * MOST_WAITING, 1000))
     assert not waiting
 
 
@@ -117,43 +117,43 @@ def test_much_that_must_not_be_lost_is_kept_and_handed_over_in_parts():
 
 def test_a_paused_worker_stands_still_and_steps_one_turn_at_a_time(start):
     counter = start(chores.counting)
-    polled(counter, lambda told: len(told) > 3)
+    polled(counter, lambda messages: len(messages) > 3)
     counter.step()  # not while it runs
     counter.pause()
     assert counter.state.name == "PAUSED"
-    settled(counter)
+    caught_up(counter)
     counter.step()
     (last,) = ticks(polled(counter, ticks))
-    assert ticks(settled(counter)) == []
+    assert ticks(caught_up(counter)) == []
     for _ in range(3):
         counter.step()
-    stepped = polled(counter, lambda told: len(ticks(told)) >= 3)
+    stepped = polled(counter, lambda messages: len(ticks(messages)) >= 3)
     assert ticks(stepped) == [last + 1, last + 2, last + 3]
-    assert ticks(settled(counter)) == []
+    assert ticks(caught_up(counter)) == []
     counter.resume()
     assert counter.state is WorkerState.RUNNING
-    assert len(ticks(polled(counter, lambda told: len(ticks(told)) > 5))) > 5
+    assert len(ticks(polled(counter, lambda messages: len(ticks(messages)) > 5))) > 5
 
 
 def test_steps_that_were_not_taken_are_forgotten_when_it_goes_on(start):
     counter = start(chores.counting)
     counter.pause()
-    settled(counter)
+    caught_up(counter)
     counter.step()
     counter.resume()
     counter.pause()
-    settled(counter)
-    assert ticks(settled(counter)) == []
+    caught_up(counter)
+    assert ticks(caught_up(counter)) == []
 
 
 def test_it_turns_at_the_pace_that_is_set(start):
     counter = start(chores.counting)
     counter.set_pace(1e-4)  # a turn in three hours: one may be due at once
-    settled(counter)
-    settled(counter)
-    assert ticks(settled(counter)) == []
+    caught_up(counter)
+    caught_up(counter)
+    assert ticks(caught_up(counter)) == []
     counter.set_pace(None)
-    assert len(ticks(polled(counter, lambda told: len(ticks(told)) > 20))) > 20
+    assert len(ticks(polled(counter, lambda messages: len(ticks(messages)) > 20))) > 20
 
 
 def test_commands_are_answered_in_order_also_while_paused(start):
@@ -161,8 +161,8 @@ def test_commands_are_answered_in_order_also_while_paused(start):
     counter.pause()
     for number in range(20):
         counter.send(number)
-    told = polled(counter, lambda told: Echo(19) in told)
-    assert [each.command for each in told if isinstance(each, Echo)] == list(range(20))
+    messages = polled(counter, lambda messages: Echo(19) in messages)
+    assert [each.command for each in messages if isinstance(each, Echo)] == list(range(20))
 
 
 @pytest.mark.parametrize(
@@ -175,8 +175,8 @@ def test_commands_are_answered_in_order_also_while_paused(start):
 )
 def test_a_generator_that_raises_fails_with_its_words(start, error, words):
     failed = start(chores.failing, error)
-    told = over(failed)
-    assert ticks(told) == [0, 1, 2]
+    messages = over(failed)
+    assert ticks(messages) == [0, 1, 2]
     assert failed.state is WorkerState.FAILED
     assert failed.problem == texts.WORKER_RAISED.format(reason=words)
 
@@ -217,15 +217,15 @@ def test_a_function_that_does_not_start_fails(start):
 )
 def test_a_process_that_dies_fails_with_the_cause(start, how, problem):
     dead = start(chores.dying, **how)
-    told = over(dead)
+    messages = over(dead)
     assert dead.state is WorkerState.FAILED
     assert dead.problem == problem
-    assert ticks(told) in ([], [0])
+    assert ticks(messages) in ([], [0])
 
 
 def test_a_process_that_hangs_is_ended(start):
     hung = start(chores.hanging)
-    polled(hung, lambda told: ticks(told) == [0])
+    polled(hung, lambda messages: ticks(messages) == [0])
     hung.patience = 0.3
     over(hung)
     assert hung.state is WorkerState.FAILED
@@ -246,7 +246,7 @@ def test_a_window_that_was_away_does_not_take_its_worker_for_hung(start):
 @POSIX
 def test_a_process_stopped_in_the_middle_of_a_message_holds_up_nothing(start):
     counter = start(chores.counting, weight=3_000_000)  # more than fits into a pipe
-    polled(counter, lambda told: len(ticks(told)) > 3)
+    polled(counter, lambda messages: len(ticks(messages)) > 3)
     os.kill(counter.process_id, signal.SIGSTOP)
     for number in range(3000):  # more than fits into the other direction
         counter.send("x" * 200)
@@ -284,7 +284,7 @@ def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
     decisions = []
     for _ in range(3):  # tests/ai/files/test_faults.py kills a writer at every step it takes on the disk
         run = start(chores.eager, TINY, 0, keep)
-        polled(run, lambda told: keep.exists() and sum(isinstance(each, Checkpoint) for each in told) > 0)
+        polled(run, lambda messages: keep.exists() and sum(isinstance(each, Checkpoint) for each in messages) > 0)
         moment = time.monotonic() + float(rng.uniform(0.0, 0.3))
         polled(run, lambda _, moment=moment: time.monotonic() > moment)
         os.kill(run.process_id, signal.SIGKILL)
@@ -298,7 +298,7 @@ def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
 @POSIX
 def test_a_run_that_is_terminated_keeps_itself(start, tmp_path):
     run = start(LanderSession.live, TINY, 0, keep=tmp_path / "run")
-    polled(run, lambda told: any(isinstance(each, Checkpoint) and each.decisions > 0 for each in told))
+    polled(run, lambda messages: any(isinstance(each, Checkpoint) and each.decisions > 0 for each in messages))
     os.kill(run.process_id, signal.SIGTERM)
     over(run)
     assert run.state is WorkerState.FAILED
@@ -404,8 +404,8 @@ def test_no_process_outlives_the_window(tmp_path, then):
 
 def test_the_process_has_one_core_and_no_pygame(start):
     looking = start(chores.looking_around)
-    (told,) = over(looking)
-    assert told == {"modules": {"numpy"}, "threads": "1", "interrupted": True}
+    (message,) = over(looking)
+    assert message == {"modules": {"numpy"}, "threads": "1", "interrupted": True}
 
 
 def test_the_program_can_be_imported_by_its_workers():
@@ -419,14 +419,14 @@ def test_the_program_can_be_imported_by_its_workers():
 def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path):
     run = start(LanderSession.live, TINY, 7, keep=tmp_path / "keep")
     run.send(("change", "no such knob", 1))
-    told = polled(run, lambda told: sum(isinstance(each, Checkpoint) for each in told) == 2)
-    assert any(isinstance(each, Refused) for each in told)
+    messages = polled(run, lambda messages: sum(isinstance(each, Checkpoint) for each in messages) == 2)
+    assert any(isinstance(each, Refused) for each in messages)
     run.pause()
     run.send(("save", tmp_path / "named"))
-    told += polled(run, lambda told: Saved(tmp_path / "named") in told)
+    messages += polled(run, lambda messages: Saved(tmp_path / "named") in messages)
     run.stop()
     over(run)
-    checkpoints = [each for each in told if isinstance(each, Checkpoint)]
+    checkpoints = [each for each in messages if isinstance(each, Checkpoint)]
     headless = Training(TINY, 7, evaluate_every=0)
     for checkpoint in checkpoints:
         while headless.agent.decisions < checkpoint.decisions:

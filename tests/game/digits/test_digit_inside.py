@@ -26,7 +26,7 @@ from game.scenes.digits.why_not import WhyNotScene, sentences
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.player import Player
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
@@ -44,7 +44,7 @@ def nine():
 
 @pytest.fixture
 def inside(open_game: Open, context: Context, modern, nine) -> Driver:
-    settle(context)
+    save_settings(context)
     driver = open_game(DigitInsideScene, modern, nine)
     driver.frames(3)
     return driver
@@ -230,7 +230,7 @@ def strange(kind: str) -> DigitClassifier:
 
 @pytest.mark.parametrize("kind", ["deep", "wide", "plain", "normalised"])
 def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: Context, nine, kind: str):
-    settle(context)
+    save_settings(context)
     driver = open_game(DigitInsideScene, strange(kind), nine)
     walk = scene(driver).walk
     for _ in range(len(walk.stages)):
@@ -251,7 +251,7 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
 
 @pytest.fixture
 def why_not(open_game: Open, context: Context, modern, nine) -> Driver:
-    settle(context)
+    save_settings(context)
     return open_game(WhyNotScene, modern, nine)
 
 
@@ -336,7 +336,7 @@ def test_its_own_answer_is_not_asked_about(why_not: Driver, monkeypatch):
 
 
 def test_a_network_that_cannot_be_asked_says_so(open_game: Open, context: Context, nine, monkeypatch):
-    settle(context)
+    save_settings(context)
     words = words_written(monkeypatch)
     driver = open_game(WhyNotScene, strange("normalised"), nine)
     driver.frames(3)

@@ -67,7 +67,7 @@ def test_the_guess_follows_every_event_without_a_frame_in_between(drawing: Drive
     assert guesses[-1].argmax() == 0
 
 
-def test_the_drawing_area_is_told_in_pixels_of_the_window(drawing: Driver):
+def test_the_drawing_area_is_given_in_pixels_of_the_window(drawing: Driver):
     for size, scale in (((1280, 720), 1.0), ((900, 760), 1.0), ((2560, 1440), 2.0)):
         drawing.resize(size)
         left, top, width, height = scene(drawing).canvas_rect

@@ -28,7 +28,7 @@ def classifier():
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
 
 
-def told(monkeypatch, driver: Driver) -> list[str]:
+def noted(monkeypatch, driver: Driver) -> list[str]:
     notes: list[str] = []
     monkeypatch.setattr(driver.top.context, "note", notes.append)
     return notes
@@ -90,7 +90,7 @@ def test_an_empty_drawing_is_no_beginning(open_game: Callable[..., Driver], clas
 # Quiz
 
 
-def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..., Driver], classifier):
+def test_a_drawing_is_read_and_a_shown_digit_answered(open_game: Callable[..., Driver], classifier):
     game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
@@ -113,7 +113,7 @@ def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..
 def test_an_empty_pad_is_not_handed_in(open_game: Callable[..., Driver], classifier, monkeypatch):
     game = open_game(QuizScene, classifier)
     game.frames(2)
-    notes = told(monkeypatch, game)
+    notes = noted(monkeypatch, game)
     game.key(pygame.K_RETURN)
     assert notes == [texts.QUIZ_NOTHING]
     assert game.top.contest.round.answer is None

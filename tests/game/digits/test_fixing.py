@@ -32,13 +32,13 @@ def done(fixing: FixRunner, seconds: float = 60):
     end = time.monotonic() + seconds
     while fixing.busy:
         assert time.monotonic() < end, "it never ended"
-        if told := fixing.poll():
-            return told
+        if fixed := fixing.poll():
+            return fixed
         time.sleep(0.01)
     return None
 
 
-def test_a_fix_is_kept_told_of_and_undone(fixing: FixRunner, misread, tmp_path: Path):
+def test_a_fix_is_kept_reported_and_undone(fixing: FixRunner, misread, tmp_path: Path):
     image, digit = misread
     shipped = fixing.folder("classic")
     assert fixing.begin("classic", image, digit)
@@ -77,7 +77,7 @@ def test_what_fails_is_said_and_changes_nothing(fixing: FixRunner, tmp_path: Pat
     assert fixing.folder("classic") == MODELS_DIR / "digits" / "classic"
 
 
-def test_a_folder_that_cannot_be_written_is_told_of(misread, tmp_path: Path):
+def test_a_folder_that_cannot_be_written_is_reported(misread, tmp_path: Path):
     (tmp_path / "user").write_text("in the way")
     fixing = FixRunner(tmp_path / "user", MODELS_DIR)
     fixing.begin("classic", *misread)

@@ -113,7 +113,7 @@ def test_undo_takes_back_strokes_and_clearing(pad: DrawingPad):
     assert pad.empty
 
 
-def test_every_change_is_told(pad: DrawingPad):
+def test_every_change_is_reported(pad: DrawingPad):
     seen = {pad.revision}
     mouse(pad, pygame.MOUSEBUTTONDOWN, (100, 100))
     seen.add(pad.revision)

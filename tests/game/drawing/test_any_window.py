@@ -17,7 +17,7 @@ from game.world.camera import LAND_REACH, WIDEST, Camera, CameraTarget
 from game.world.landscape.backdrop import Backdrop
 from tests.support.driver import Driver
 from tests.support.flights import play
-from tests.support.screens import crashed, opened, settle
+from tests.support.screens import crashed, opened, save_settings
 from tests.support.written import Written
 
 SHAPES = [(1290, 430), (640, 1280), (800, 800)]  # three to one, one to two, square
@@ -35,7 +35,7 @@ def boxes(written: Written, driver: Driver) -> dict[str, pygame.FRect]:
 
 
 def test_read_outs_keep_their_distance_from_the_edges(open_game, context: Context):
-    settle(context)
+    save_settings(context)
     driver = opened(open_game, "Play")
 
     def places() -> list[tuple[pygame.FRect, str, str]]:
@@ -90,7 +90,7 @@ def test_sky_and_land_fill_the_window_wherever_the_camera_goes(size: tuple[int, 
 
 
 def test_help_is_chosen_by_the_mouse_where_it_is_seen(open_game, context, written: Written):
-    settle(context, three_pads=True)
+    save_settings(context, three_pads=True)
     driver = opened(open_game, "Play")
     canvas = driver.app.canvas
     for size, word in zip(SHAPES, ("guide", "off", "guard"), strict=True):
@@ -100,7 +100,7 @@ def test_help_is_chosen_by_the_mouse_where_it_is_seen(open_game, context, writte
 
 
 def test_a_choice_at_the_foot_and_a_hint_at_the_head_are_pressed_where_they_are_seen(open_game, context, written):
-    settle(context)
+    save_settings(context)
     driver = opened(open_game, "WatchScene")
     for size, count in zip(SHAPES, (16, 64, 1), strict=True):
         reshape(driver, size)
@@ -114,7 +114,7 @@ def test_a_choice_at_the_foot_and_a_hint_at_the_head_are_pressed_where_they_are_
 
 
 def test_a_stopped_lander_is_dragged_where_it_is_seen(open_game, context: Context):
-    settle(context)
+    save_settings(context)
     driver = opened(open_game, "WatchScene")
     reshape(driver, SHAPES[1])
     driver.key(pygame.K_SPACE)
@@ -133,7 +133,7 @@ def test_a_stopped_lander_is_dragged_where_it_is_seen(open_game, context: Contex
 
 @pytest.mark.parametrize("size", SHAPES)
 def test_the_panel_that_explains_stands_at_the_right_edge(open_game, context, written: Written, size: tuple[int, int]):
-    settle(context, three_pads=True, assist=0.4, show_thinking=True)
+    save_settings(context, three_pads=True, assist=0.4, show_thinking=True)
     driver = opened(open_game, "Play")
     reshape(driver, size)
     driver.frames(3)
@@ -149,7 +149,7 @@ def test_the_panel_that_explains_stands_at_the_right_edge(open_game, context, wr
 
 
 def test_the_window_may_change_while_something_is_asked(open_game, context: Context):
-    settle(context)
+    save_settings(context)
     driver = opened(open_game, "QuestionDialog")
     for size in (SHAPES[0], (1280, 720)):
         reshape(driver, size)
@@ -167,7 +167,7 @@ def test_a_window_too_small_to_read_grows_again(open_game, asked: tuple[int, int
 
 
 def test_a_crash_is_not_hidden(open_game, context: Context):
-    settle(context)
+    save_settings(context)
     driver = opened(open_game, "Play")
     reshape(driver, (640, 1280))
     crashed(driver)

@@ -24,7 +24,7 @@ from game.world.landscape.themes import LOOKS, MOON
 from tests.support.descent import stand_on
 from tests.support.driver import Driver
 from tests.support.flights import play
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
 MOST = A_FRAME + PIECE  # a piece is begun while the frame's share is not used up
@@ -100,7 +100,7 @@ def costs(app: App, until: Callable[[], bool]) -> list[int]:
 
 @pytest.mark.usefixtures("scripted_network")
 def test_the_next_leg_is_painted_before_it_begins_and_no_frame_paints_much(open_game: Open, context, in_pieces: None):
-    settle(context)
+    save_settings(context)
     driver = open_game(PlayScene, 5, challenge=Descent())
     challenge = play(driver).challenge
     assert isinstance(challenge, Descent)
@@ -130,7 +130,7 @@ def test_what_lies_ahead_waits_for_what_is_seen(in_pieces: None):
 
 
 def test_the_window_may_change_its_size_while_its_land_is_painted(open_game: Open, context, in_pieces: None):
-    settle(context)
+    save_settings(context)
     driver = open_game(MenuScene)
     for size in ((900, 600), (640, 360), (1000, 420), (800, 450)):
         driver.resize(size)
@@ -145,7 +145,7 @@ def test_the_window_may_change_its_size_while_its_land_is_painted(open_game: Ope
 
 
 def test_a_minimised_window_paints_nothing_and_goes_on_afterwards(open_game: Open, context, in_pieces: None):
-    settle(context)
+    save_settings(context)
     driver = open_game(MenuScene)
     driver.frames(3)
     driver.app.window.minimised = True

@@ -9,7 +9,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LABEL, SMALL, TEXT_SIZES, VIEW_SIZE
 from game.scenes.menus.settings import SettingsScene
 from game.ui.context import Context
-from tests.support.screens import opened, settle
+from tests.support.screens import opened, save_settings
 
 
 def test_small_text_grows_most_and_order_is_kept():
@@ -57,6 +57,6 @@ def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
 
 
 def test_a_size_nobody_knows_is_the_usual_one(open_game, context: Context):
-    settle(context, text_size="enormous")
+    save_settings(context, text_size="enormous")
     assert opened(open_game, "SettingsScene").top_name == "SettingsScene"
     assert typeface.growth() == 1.0

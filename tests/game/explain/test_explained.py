@@ -42,9 +42,9 @@ def test_everything_in_watch_is_explained(watching: Driver):
     watching.key(pygame.K_SPACE)
     watching.keys(pygame.K_m)
     watching.frames(12)
-    told = areas(watching)
+    named = areas(watching)
     inputs = [
-        what for what in told if what in {text.format(unit=u) for text in texts.EXPLAIN_INPUTS for u in (10 / 3, 2)}
+        what for what in named if what in {text.format(unit=u) for text in texts.EXPLAIN_INPUTS for u in (10 / 3, 2)}
     ]
     assert len(inputs) == 9
     for what in (
@@ -52,11 +52,11 @@ def test_everything_in_watch_is_explained(watching: Driver):
         *(texts.EXPLAIN_READOUTS[name] for name in PILOT),
         *texts.EXPLAIN_CHOICES, *texts.EXPLAIN_TOUCH, texts.EXPLAIN_MAP[0],
     ):  # fmt: skip
-        assert what in told
+        assert what in named
     assert all(area.now() == area.now() for area in watching.app.canvas.explained)
 
 
-def test_a_mouse_at_rest_is_told_what_it_points_at(watching: Driver, written: list[str]):
+def test_a_mouse_at_rest_is_shown_what_it_points_at(watching: Driver, written: list[str]):
     watching.key(pygame.K_SPACE)
     place = areas(watching)[texts.EXPLAIN_READOUTS["descent"]].center
     watching.move(place)
@@ -142,10 +142,10 @@ def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_paus
     driver.frames(3)
     assert set(texts.EXPLAIN_READOUTS.values()) <= areas(driver).keys()
     driver.key(pygame.K_F1)
-    told = [area.what for area in driver.app.canvas.explained]
-    assert shows(driver, written, told[0])
+    explained = [area.what for area in driver.app.canvas.explained]
+    assert shows(driver, written, explained[0])
     driver.key(pygame.K_RIGHT)
-    assert shows(driver, written, told[1])
+    assert shows(driver, written, explained[1])
 
 
 def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
@@ -153,9 +153,9 @@ def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
     charts = TrainingCharts(more=True)
     charts.place([pygame.FRect(40, 100 + 150 * row, 360, 112) for row in range(4)])
     charts.draw(canvas)
-    told = [area.what for area in canvas.explained]
-    assert {texts.EXPLAIN_CHARTS[name] for name in LANDER_CHARTS} <= set(told)
-    assert told.count(texts.EXPLAIN_AXES[0]) == len(charts.charts)
+    explained = [area.what for area in canvas.explained]
+    assert {texts.EXPLAIN_CHARTS[name] for name in LANDER_CHARTS} <= set(explained)
+    assert explained.count(texts.EXPLAIN_AXES[0]) == len(charts.charts)
     assert texts.EXPLAIN_CHART_NOW.format(value="–") in {area.now() for area in canvas.explained}
     for area in canvas.explained:  # an explanation and the cursor of a chart do not meet
         assert all(chart.x_at(area.box.center) is None for chart in charts.charts)

@@ -289,7 +289,7 @@ def test_a_network_of_another_size_takes_its_place_while_a_unit_is_looked_at(can
     assert [column.total for column in view.columns] == [9, 3, 6]
 
 
-def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_outputs_are_given_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -> None:
     network = network_of()
     values = network.predict(np.atleast_2d(OBSERVATION))[0]
     view = NetworkView(LARGE, FEATURE_NAMES, ACTION_NAMES)

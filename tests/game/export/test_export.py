@@ -42,7 +42,7 @@ def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record:
     assert (after != end).any()
 
 
-def test_a_film_is_written_whole_and_told_of(record: Record, small: None, tmp_path: Path):
+def test_a_film_is_written_whole_and_reported(record: Record, small: None, tmp_path: Path):
     path = tmp_path / "new folder" / "flight.gif"
     shares = [drawn.share for (drawn,) in film(ReplayScene, record, path)]
     assert shares == sorted(shares)
@@ -164,7 +164,7 @@ def test_a_film_is_made_while_the_replay_plays_and_can_be_stopped_and_leaving_en
     assert not multiprocessing.active_children()
 
 
-def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, ReplayScene], tmp_path: Path):
+def test_a_folder_that_cannot_be_had_is_reported(replay: tuple[Driver, ReplayScene], tmp_path: Path):
     driver, scene = replay
     (tmp_path / "pictures").write_text("in the way")
     driver.press_on(texts.REPLAY_EXPORT)

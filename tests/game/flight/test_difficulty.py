@@ -44,9 +44,9 @@ def record_of(flight: Flight) -> Record:
 
 
 def test_all_of_it_is_no_change_bit_for_bit():
-    plain, told = fly({}), fly({0: 1.0, 7: 1.0})
-    assert told.recording.gravity == ()
-    assert np.array_equal(plain.poses.now, told.poses.now)
+    plain, explicit = fly({}), fly({0: 1.0, 7: 1.0})
+    assert explicit.recording.gravity == ()
+    assert np.array_equal(plain.poses.now, explicit.poses.now)
 
 
 def test_two_changes_between_two_steps_are_one():
@@ -81,7 +81,7 @@ def test_a_gravity_beyond_its_limits_is_defaulted(value):
     assert Settings.from_dict({"gravity": value, "pace": 0.8}) == Settings(pace=0.8)
 
 
-def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context: Context):
+def test_gravity_is_changed_in_flight_at_once_and_said(open_game: Open, context: Context):
     context.settings.tutored = context.settings.more_flights = True
     context.settings_file.save(context.settings)
     game = open_game(PlayScene, 3)

@@ -128,7 +128,7 @@ def test_the_card_names_what_broke_the_craft_beside_the_pad_too(subtests: pytest
             assert card.advice == texts.ADVICE[advice]
 
 
-def test_a_craft_that_tipped_over_in_the_gust_is_told_of_that_and_not_of_its_speed():
+def test_a_craft_that_tipped_over_in_the_gust_reads_of_that_and_not_of_its_speed():
     flight = fallen(0, 12, 1.0, -1.0, 1.2, 1.5, action=3)
     card, (speed, _, tilt) = outcome_card(flight.env, 1.0), flight.env.impact[0]
     assert flight.env.cause[0] != Cause.TILTED

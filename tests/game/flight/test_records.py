@@ -77,7 +77,7 @@ def test_a_flight_comes_back_from_its_file_and_flies_as_it_did(kept: Records, pa
     assert again.poses.now[0].tolist() == list(record.end)
 
 
-def test_the_logbook_tells_who_flew_what_came_of_it_and_on_what(kept: Records):
+def test_the_logbook_says_who_flew_what_came_of_it_and_on_what(kept: Records):
     kept.keep(fly(), NOON, network="modern")
     kept.keep(fly(by_hand=True), NOON + 60, alone=True)
     first, second = kept.entries()
@@ -204,7 +204,7 @@ def test_a_clock_that_is_set_back_costs_no_new_flight(kept: Records, monkeypatch
     assert [line.file for line in kept.entries()][-12:] == new
 
 
-def test_flights_of_one_moment_are_told_apart_also_by_two_games(kept: Records, tmp_path: Path):
+def test_flights_of_one_moment_are_distinguished_also_by_two_games(kept: Records, tmp_path: Path):
     other = Records(kept.folder.parent)
     flight = fly()
     names = [games.keep(flight, NOON).file for _ in range(3) for games in (kept, other)]

@@ -66,10 +66,10 @@ def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(context: Conte
             seen.append(state(flight_replay))
         assert flight_replay.flight.poses.now.tobytes() == flight.poses.now.tobytes(), name
         for step in (0, 1, 19, 20, 21, 77, last - 1, last, 51, 50, 49, 40, 39, 3, last):
-            flight_replay.seek(step)
+            flight_replay.go_to(step)
             assert flight_replay.at == step
             assert state(flight_replay) == seen[step], (name, step)
-        flight_replay.seek(60)
+        flight_replay.go_to(60)
         for step in range(61, 90):
             flight_replay.step()
             assert state(flight_replay) == seen[step], (name, step)
@@ -93,14 +93,14 @@ def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
 def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flight(record: Record):
     flight_replay: Any = FlightReplay(record)
     flight_replay.scout(30)
-    flight_replay.seek(500)
+    flight_replay.go_to(500)
     assert flight_replay.at == 30
-    flight_replay.seek(-5)
+    flight_replay.go_to(-5)
     assert flight_replay.at == 0
     assert not flight_replay.touching
     flight_replay.scout(10_000)
     assert flight_replay.touching
-    flight_replay.seek(10_000)
+    flight_replay.go_to(10_000)
     assert (flight_replay.at, flight_replay.complete, flight_replay.faithful) == (flight_replay.length, True, True)
     assert len(flight_replay.path) == flight_replay.length + 1
     flight_replay.step()
@@ -113,15 +113,15 @@ def test_hands_are_those_that_flew(context: Context, pads: int):
     flight = scripted(pads=pads, by_hand=40)
     flight_replay = FlightReplay(records.read(records.keep(flight, NOON).file))
     flight_replay.scout(10_000)
-    flight_replay.seek(40)
+    flight_replay.go_to(40)
     assert flight_replay.flight.flown_by.name == "HUMAN"
-    flight_replay.seek(41)
+    flight_replay.go_to(41)
     assert flight_replay.flight.flown_by.name == "NETWORK"
-    flight_replay.seek(flight_replay.length)
+    flight_replay.go_to(flight_replay.length)
     assert flight_replay.flight.share == flight.share
 
 
-def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: Record):
+def test_a_flight_that_goes_another_way_now_is_reported(open_game: Open, record: Record):
     x, y, angle = record.end
     flight_replay = FlightReplay(replace(record, end=(x + 0.01, y, angle)))
     flight_replay.scout(10_000)

@@ -47,11 +47,11 @@ def test_each_code_of_a_text_is_judged_by_itself(tmp_path, capsys, record):
         f"> “{code(record)}”", code(record)[:-6],
     ]))  # fmt: skip
     assert main(["verify", str(file), "--json"]) == 1
-    told = json.loads(capsys.readouterr().out)
-    assert [row["verdict"] for row in told["flights"]] == ["true", "wrong", "wrong", "true", "refused"]
-    assert (told["true"], told["wrong"], told["refused"]) == (2, 2, 1)
-    assert [row["points"] for row in told["flights"][:4]] == [best] * 4
-    assert told["flights"][0]["medal"] == record.entry.medal
+    report = json.loads(capsys.readouterr().out)
+    assert [row["verdict"] for row in report["flights"]] == ["true", "wrong", "wrong", "true", "refused"]
+    assert (report["true"], report["wrong"], report["refused"]) == (2, 2, 1)
+    assert [row["points"] for row in report["flights"][:4]] == [best] * 4
+    assert report["flights"][0]["medal"] == record.entry.medal
     assert main(["verify", str(file)]) == 1
     lines = capsys.readouterr().out.splitlines()
     fall = texts.MISSIONS["fall"][0]

@@ -14,7 +14,7 @@ from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.game.input.test_pads import VirtualPads, pads
 from tests.support.driver import Driver
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 
 __all__ = ["pads"]  # the fixture
 TURN, RISE = pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_RIGHTY
@@ -151,7 +151,7 @@ def test_a_press_switches_the_engine_on_and_the_next_one_off(controls: Controls,
 def test_a_real_pad_flies_with_shares_that_the_flame_follows_and_is_pulled_out(
     open_game: Callable[..., Driver], context: Context, pads: VirtualPads
 ):
-    settle(context)
+    save_settings(context)
     game = open_game(PlayScene, 3)
     play = game.top
     pads.plug_in()

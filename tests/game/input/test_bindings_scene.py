@@ -138,7 +138,7 @@ def test_a_click_elsewhere_or_a_leave_ends_the_waiting(table: Driver):
 
 
 def test_all_that_a_new_key_drops_is_said(table: Driver):
-    """Whoever binds the arrow up to a jet loses four keys, and is told of every one."""
+    """Whoever binds the arrow up to a jet loses four keys, and reads of every one."""
     table.keys(pygame.K_DOWN, pygame.K_RETURN, pygame.K_UP)
     left, main = texts.BINDINGS["LEFT"], texts.BINDINGS["MAIN"]
     assert said(table) == f"{left}: ↑, and no longer ← or A.  {main}: Space and W, and no longer ↑."

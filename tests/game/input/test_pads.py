@@ -126,7 +126,7 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
     assert SIGN.search(game.app.context.controls.word(Command.CONFIRM))
 
 
-def test_a_pad_pulled_out_before_its_turn_is_not_told_of_by_the_name_of_another(game: Driver, pads: VirtualPads):
+def test_a_pad_pulled_out_before_its_turn_is_not_reported_by_the_name_of_another(game: Driver, pads: VirtualPads):
     pads.plug_in()
     game.frames(2)
     assert "Virtual" in game.said

@@ -135,7 +135,7 @@ def test_more_units_divide_more_of_the_plane(subtests: pytest.Subtests):
                 assert units or np.abs(said).max() < 0.4, "one neuron stays undecided"
 
 
-def test_the_plane_tells_what_the_trained_network_answers(made: Made):
+def test_the_plane_shows_what_the_trained_network_answers(made: Made):
     chapter = made(PlaneChapter)
     chapter.update()
     assert not chapter.tried
@@ -287,7 +287,7 @@ def broken(*_: object, **__: object) -> Iterator[tuple[()]]:
     raise FloatingPointError("it diverged")
 
 
-def test_a_run_that_fails_is_told(made: Made, monkeypatch: pytest.MonkeyPatch):
+def test_a_run_that_fails_is_reported(made: Made, monkeypatch: pytest.MonkeyPatch):
     chapter = made(PayChapter)
     monkeypatch.setattr("game.scenes.learn.pay.live", broken)
     chapter.train()
@@ -415,8 +415,8 @@ def test_two_agents_learn_and_a_guess_gets_its_verdict_from_this_very_run(
             assert (chapter.states, chapter.tried) == ([], False)
 
 
-def _percents(told: str) -> list[str]:
-    words = told.split()
+def _percents(sentence: str) -> list[str]:
+    words = sentence.split()
     return [f"{figure} %" for figure, sign in pairwise(words) if sign.startswith("%")]
 
 

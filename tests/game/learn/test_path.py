@@ -15,7 +15,7 @@ from game.scenes.learn.scene import CODE, PREDICT, TRY, WHY, ChapterScene
 from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
@@ -40,7 +40,7 @@ def test_learn_is_a_word_of_the_menu_and_leads_to_physics(open_game: Open):
 
 
 def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Open, context: Context):
-    settle(context)
+    save_settings(context)
     driver = open_game(LearnScene)
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     driver.frames(20)
@@ -60,7 +60,7 @@ def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Op
 
 
 def test_each_chapter_is_gone_through(open_game: Open, context: Context, subtests: pytest.Subtests):
-    settle(context)
+    save_settings(context)
     for key in KEYS:
         with subtests.test(key):
             driver = open_game(ChapterScene, key)
@@ -85,7 +85,7 @@ def test_each_chapter_is_gone_through(open_game: Open, context: Context, subtest
 
 
 def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, context: Context, monkeypatch):
-    settle(context)
+    save_settings(context)
     driver = open_game(ChapterScene, "neuron")
     scene, progress = driver.top, Progress(driver.app.context.settings)
     scene.turn_to(WHY)
@@ -101,8 +101,8 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     assert driver.saved()["learnt"]["neuron"]["done"] is True
     assert driver.top.form.focused.label == texts.LEARN_ON[WHY], "on to the code, before the way out"
     said, answers = written(driver, monkeypatch), texts.LEARN_ANSWERS["neuron"]
-    for told in (texts.LEARN_YOU_SAID, answers[0], texts.LEARN_CAME[False], answers[2]):
-        assert told in said
+    for part in (texts.LEARN_YOU_SAID, answers[0], texts.LEARN_CAME[False], answers[2]):
+        assert part in said
     progress.note("neuron", guess=2)
     said = written(driver, monkeypatch)
     scene.turn_to(WHY)
@@ -112,8 +112,8 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     assert open_game(ChapterScene, "neuron").top.page == PREDICT, "opened again, it asks for a guess again"
 
 
-def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_told(open_game: Open, context: Context, monkeypatch):
-    settle(context)
+def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_said(open_game: Open, context: Context, monkeypatch):
+    save_settings(context)
     for key, begin, end in (("moment", texts.LEARN_MOMENT_GO, 500), ("pay", texts.LEARN_PAY_TRAIN, 0)):
         driver = open_game(ChapterScene, key)
         scene, progress = driver.top, Progress(driver.app.context.settings)
@@ -133,7 +133,7 @@ def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_told(open_game:
 def test_no_hyphen_stands_for_a_minus_and_another_language_changes_all_words_at_once(
     open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
 ):
-    settle(context)
+    save_settings(context)
     begin = {"neuron": "hint", "moment": "go"}
     for key in KEYS:
         with subtests.test(key):
@@ -160,7 +160,7 @@ def test_no_hyphen_stands_for_a_minus_and_another_language_changes_all_words_at_
 
 
 def test_a_chapter_of_steps_is_done_when_all_of_them_are(open_game: Open, context: Context):
-    settle(context, learnt={"own": {"done": True}})
+    save_settings(context, learnt={"own": {"done": True}})
     driver = open_game(ChapterScene, "own")
     progress, chapter = Progress(driver.app.context.settings), driver.top.chapter
     assert not progress.done("own"), "it says 0 of 6"
@@ -174,7 +174,7 @@ def test_a_chapter_of_steps_is_done_when_all_of_them_are(open_game: Open, contex
 
 def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):
     damaged = {"neuron": 3, "plane": {"guess": "two", "done": 1}, "downhill": {"guess": -1}}
-    settle(context, learnt=damaged, chapter="gone")
+    save_settings(context, learnt=damaged, chapter="gone")
     driver = open_game(LearnScene)
     progress = Progress(driver.app.context.settings)
     for key in ("neuron", "plane", "downhill"):
@@ -202,7 +202,7 @@ def test_progress_of_before_still_counts():
 def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
     open_game: Open, context: Context, monkeypatch, tmp_path
 ):
-    settle(context)
+    save_settings(context)
     for key, missing in (("backwards", "models_dir"), ("backwards", "assets_dir"), ("choice", "models_dir")):
         with monkeypatch.context() as patch:
             patch.setattr(context, missing, tmp_path)

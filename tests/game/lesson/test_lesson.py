@@ -48,9 +48,9 @@ def explained(driver: Driver) -> dict[str, str]:
     return {area.what: area.now() for area in driver.app.canvas.explained}
 
 
-def figures_of(told: str) -> list[tuple[str, float]]:
+def figures_of(explanation: str) -> list[tuple[str, float]]:
     """Return the words and the figures of an explanation."""
-    rows = (line.split("\t") for line in told.split("\n") if "\t" in line)
+    rows = (line.split("\t") for line in explanation.split("\n") if "\t" in line)
     return [(word, float(figure.replace("−", "-").replace("k", "e3"))) for word, figure in rows]
 
 
@@ -210,13 +210,13 @@ def test_what_happened_shows_the_parts_of_each_decisions_pay_and_the_state_after
     assert points(float(lesson.cell.reward) / lesson.config.reward_scale) in words
     for feature, value in enumerate(in_units(lesson.cell.next_state).tolist()):
         assert sensed(value, feature) in words
-    told = explained(driver)
+    explanations = explained(driver)
     for place, (reward, factor) in enumerate(
         zip(flown.rewards.tolist(), lesson.config.discount ** np.arange(len(flown.rewards)), strict=True)
     ):
         assert points(reward) in words
         assert points(reward * factor) in words
-        *parts, (_, whole) = figures_of(told[texts.LESSON_DECISION.format(number=place + 1)])
+        *parts, (_, whole) = figures_of(explanations[texts.LESSON_DECISION.format(number=place + 1)])
         assert whole == pytest.approx(reward, abs=0.006)
         assert sum(paid for _, paid in parts) == pytest.approx(reward, abs=0.04)
         assert {word for word, _ in parts} == {
@@ -306,7 +306,7 @@ def links_of(frame: GradientFrame) -> list[Link]:
     return links(network)
 
 
-def test_after_the_step_the_value_and_its_pulls_are_told(driver: Driver, lesson: Lesson):
+def test_after_the_step_the_value_and_its_pulls_are_shown(driver: Driver, lesson: Lesson):
     words, scale = " ".join(shown(driver, AFTER)), lesson.config.reward_scale
     frame, action = driver.top.frame, int(lesson.cell.action)
     assert isinstance(frame, AfterFrame)
@@ -335,9 +335,9 @@ def test_a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
 def assert_sums_add_up(frame: NetworkFrame) -> None:
     for column in range(1, len(frame.view.columns)):
         for unit in frame.view.columns[column].units.tolist():
-            told = figures_of(frame.unit(column, unit))
-            at = [word for word, _ in told].index(texts.LESSON_STAGES["sum"])
-            assert sum(figure for _, figure in told[:at]) == pytest.approx(told[at][1], rel=0.02, abs=0.005)
+            figures = figures_of(frame.unit(column, unit))
+            at = [word for word, _ in figures].index(texts.LESSON_STAGES["sum"])
+            assert sum(figure for _, figure in figures[:at]) == pytest.approx(figures[at][1], rel=0.02, abs=0.005)
 
 
 # An image of the digit network

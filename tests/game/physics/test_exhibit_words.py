@@ -97,7 +97,7 @@ def test_a_column_that_was_robbed_weighs_less():
 
 
 @pytest.mark.parametrize("kind", [Heap, Impacts])
-def test_energy_that_a_hand_brings_in_is_told_of(kind: Callable[[float], Exhibit]):
+def test_energy_that_a_hand_brings_in_is_named(kind: Callable[[float], Exhibit]):
     exhibit = kind(MOON)
     first = exhibit.energy if kind is Heap else exhibit.kinetic_energy
     for _ in life(exhibit, 3.0):
@@ -111,7 +111,7 @@ def test_energy_that_a_hand_brings_in_is_told_of(kind: Callable[[float], Exhibit
     assert figures(said(exhibit))[1] > figures(said(exhibit))[0] or kind is Heap
 
 
-def test_only_boxes_that_slid_by_themselves_count_and_the_slope_is_told_only_of_them():
+def test_only_boxes_that_slid_by_themselves_count_and_the_slope_is_given_only_of_them():
     slopes = Slopes(EARTH)
     steep = np.tan(np.radians(30))
     lying = 0
@@ -123,8 +123,8 @@ def test_only_boxes_that_slid_by_themselves_count_and_the_slope_is_told_only_of_
                 assert label.text == f"μ = {friction:.2f}"
                 continue
             lying += 1
-            tangent, told = figures(label.text)
-            assert (told, label.within) == (friction, tangent <= friction)
+            tangent, shown = figures(label.text)
+            assert (shown, label.within) == (friction, tangent <= friction)
             assert tangent == pytest.approx(steep, abs=0.01)
             assert abs(np.tan(float(box.angle[0]))) == pytest.approx(tangent, abs=0.12)
     assert lying > 150
@@ -136,13 +136,13 @@ def test_only_boxes_that_slid_by_themselves_count_and_the_slope_is_told_only_of_
 @pytest.mark.parametrize("gravity", GRAVITIES)
 def test_a_ball_is_said_to_have_come_back_only_once_it_has(gravity: float):
     bounce = Bounce(gravity)
-    ball, told, below, up = bounce.balls[3], [], False, False
+    ball, states, below, up = bounce.balls[3], [], False, False
     for _ in life(bounce, 6.0):
         bottom = float(ball.position[0, 1]) - bounce.radius
         below |= bottom < 0.005
         up |= below and float(ball.velocity[0, 1]) > 0
         state = next(word for word in ("not bounced", "on its way up", "came back") if word in said(bounce))
-        told += [state] if state not in told else []
+        states += [state] if state not in states else []
         if state == "not bounced":
             assert not up
         elif state == "on its way up":
@@ -151,7 +151,7 @@ def test_a_ball_is_said_to_have_come_back_only_once_it_has(gravity: float):
         else:
             assert figures(said(bounce))[-1] == pytest.approx(0.75**2 * bounce.values["drop"], rel=0.01)
         assert ("was" in words(bounce)[6]) is (state == "came back")
-    assert told == ["not bounced", "on its way up", "came back"]
+    assert states == ["not bounced", "on its way up", "came back"]
     hold(bounce, ball, (2.0, 9.0))
     assert figures(said(bounce))[-1] == pytest.approx(
         0.75**2 * bounce.values["drop"], rel=0.01
@@ -174,14 +174,14 @@ def test_a_disc_is_said_to_fall_only_while_it_does(gravity: float):
     race = DragRace(gravity)
     disc, last = race.discs[1], 0.0
     for _ in life(race, 10.0):
-        terminal, told = figures(said(race))[-2:]
+        terminal, speed = figures(said(race))[-2:]
         if "falls at" in said(race):
             last = -float(disc.velocity[0, 1])
             assert float(disc.position[0, 1]) > 0.42
-            assert told == pytest.approx(last, abs=0.006)
+            assert speed == pytest.approx(last, abs=0.006)
         else:
             assert said(race).endswith(f"fell at {last:.2f} m/s in the end.")
-        assert told <= terminal
+        assert speed <= terminal
     assert "fell at" in said(race)
     caught = DragRace(gravity)
     hold(caught, caught.discs[1], (0.0, 13.0))
@@ -189,7 +189,7 @@ def test_a_disc_is_said_to_fall_only_while_it_does(gravity: float):
         assert "Your hand moved" in said(caught)
 
 
-def test_rails_are_told_of_by_the_discs_that_are_on_them():
+def test_rails_are_named_by_the_discs_that_are_on_them():
     impacts = Impacts(MOON)
     assert words(impacts)[0].startswith("1 in motion at first  ·  1 now")
     hold(impacts, impacts.discs[0][-1], (9.0, 2.0), steps=1)

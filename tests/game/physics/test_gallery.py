@@ -252,13 +252,13 @@ def test_f1_explains_one_thing_after_the_other(gallery: Driver, monkeypatch: pyt
     words = words_written(monkeypatch)
     gallery.key(pygame.K_F1)
     assert scene(gallery).explained.stepping
-    told = set()
+    explained_texts = set()
     for _ in range(24):
         words.clear()
         gallery.frames(1)
-        told |= {what for what in texts.EXPLAIN_PHYSICS.values() if what[:20] in " ".join(words)}
+        explained_texts |= {what for what in texts.EXPLAIN_PHYSICS.values() if what[:20] in " ".join(words)}
         gallery.key(pygame.K_RIGHT)
-    assert told == set(texts.EXPLAIN_PHYSICS.values())
+    assert explained_texts == set(texts.EXPLAIN_PHYSICS.values())
     gallery.key(pygame.K_ESCAPE)
     assert not scene(gallery).explained.stepping
 

@@ -146,7 +146,7 @@ def test_a_plot_shows_the_runs_that_differ_in_its_quantity_alone():
     assert results.along(EXHIBITS["impacts"](EARTH), "striker") == []
 
 
-def test_the_panel_tells_law_measurement_and_their_difference():
+def test_the_panel_shows_law_measurement_and_their_difference():
     results, exhibit = Results(), EXHIBITS["bounce"](EARTH)
     panel = LawPlot(exhibit, "drop", results)
     [(waiting, _)] = panel.sentences("")
@@ -154,16 +154,16 @@ def test_the_panel_tells_law_measurement_and_their_difference():
     result = measured(exhibit)
     results.add(exhibit)
     panel.refresh()
-    told = " ".join(words for words, _ in panel.sentences(""))
-    assert f"measured {result:.2f} m: {abs(result - 3.375):.3f} m apart" in told
-    assert "1 run in this plot" in told
+    sentences = " ".join(words for words, _ in panel.sentences(""))
+    assert f"measured {result:.2f} m: {abs(result - 3.375):.3f} m apart" in sentences
+    assert "1 run in this plot" in sentences
     finish(RangeMeasurement(exhibit, "drop", results))
     panel.refresh()
     worst = max(abs(result - 0.5625 * value) for value, result in panel.points)
     assert panel.worst == pytest.approx(worst)
-    told = " ".join(words for words, _ in panel.sentences(""))
-    assert f"{len(panel.points)} runs in this plot: at most {worst:.3f} m apart" in told
-    assert texts.LAWS["bounce"][4] in told
+    sentences = " ".join(words for words, _ in panel.sentences(""))
+    assert f"{len(panel.points)} runs in this plot: at most {worst:.3f} m apart" in sentences
+    assert texts.LAWS["bounce"][4] in sentences
     assert panel.sentences("Measuring")[-1][0] == "Measuring"
 
 

@@ -133,9 +133,9 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
                     numbers = {number for number, _ in source.lines}
                     assert piece.function is World.step or piece.line in numbers
                     assert set(piece.notes or {}) <= numbers
-                    told = " ".join([record.sentence(piece, followed), *(piece.notes or {}).values()])
-                    assert "nan" not in told
-                    assert "{" not in told
+                    sentences = " ".join([record.sentence(piece, followed), *(piece.notes or {}).values()])
+                    assert "nan" not in sentences
+                    assert "{" not in sentences
 
 
 def _size(record: StepRecord, contact: int) -> float:

@@ -136,7 +136,7 @@ def test_the_best_flight_of_a_day_is_a_landing_of_that_day(context: Context):
     assert Days(context.user_dir).best_flight(TODAY - timedelta(days=9)) is None
 
 
-def test_the_line_to_paste_tells_nothing_of_the_way(open_game: Open, context: Context, clipboard: list[str]):
+def test_the_line_to_paste_says_nothing_of_the_way(open_game: Open, context: Context, clipboard: list[str]):
     driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
     crash(driver)
     driver.key(pygame.K_k)
@@ -153,12 +153,12 @@ def test_the_line_to_paste_tells_nothing_of_the_way(open_game: Open, context: Co
 
 def test_everything_of_a_day_can_be_copied_and_watched(open_game: Open, context: Context, clipboard: list[str]):
     record = kept(context, flown(TODAY), time.time(), alone=True, course="daily")
-    told = Attempt(TODAY.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file)
-    Days(context.user_dir).note(told)
+    first_attempt = Attempt(TODAY.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file)
+    Days(context.user_dir).note(first_attempt)
     driver = open_game(day_scene)
     driver.frames(2)
     driver.press_on(texts.DAYS_COPY)
-    assert clipboard[-1] == told.line
+    assert clipboard[-1] == first_attempt.line
     driver.press_on(texts.CODE_COPY)
     assert clipboard[-1].startswith("tranq2-")
     driver.press_on(texts.LOGBOOK_WATCH)
@@ -186,7 +186,7 @@ def test_a_first_attempt_that_has_ended_is_never_replaced(context: Context):
     assert Days(context.user_dir).attempts["2026-01-01"].outcome == "CRASHED"
 
 
-def test_a_disk_that_cannot_be_written_is_told(open_game: Open, context: Context):
+def test_a_disk_that_cannot_be_written_is_reported(open_game: Open, context: Context):
     context.user_dir.mkdir(parents=True, exist_ok=True)
     (context.user_dir / FILE_NAME).mkdir()
     driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
@@ -209,9 +209,9 @@ def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(
     assert scene.flight.intact
     assert scene.ending.card.title == texts.BESIDE_TITLE
     driver.key(pygame.K_k)
-    told = Days(context.user_dir).attempts[day.isoformat()]
-    assert clipboard[-1] == told.line == f"Tranquility {day} · {texts.BESIDE_RESULT} · first attempt"
+    first_attempt = Days(context.user_dir).attempts[day.isoformat()]
+    assert clipboard[-1] == first_attempt.line == f"Tranquility {day} · {texts.BESIDE_RESULT} · first attempt"
     driver = open_game(lambda context: DaysScene(context, day))
     driver.frames(2)
     assert driver.the(ListRow).rows[0][1] == texts.BESIDE_RESULT
-    assert replace(told, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]
+    assert replace(first_attempt, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]

@@ -134,11 +134,11 @@ def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, writte
 )
 def test_a_wrong_claim_is_said_to_be_wrong(open_game: Open, record: Record, changed, words):
     if changed is None:
-        told = replace(record, end=(5.0, 5.0, 0.0))
+        claimed = replace(record, end=(5.0, 5.0, 0.0))
     else:
-        told = replace(record, entry=replace(record.entry, **changed))
+        claimed = replace(record, entry=replace(record.entry, **changed))
     driver = open_game()
-    driver.post(pygame.DROPTEXT, text=sharing.code(told))
+    driver.post(pygame.DROPTEXT, text=sharing.code(claimed))
     driver.frames(200)
     assert page(driver).claimed.true is False
     assert f"landed, {record.entry.score} points. Wrong: {words}." in page(driver).claimed.words

@@ -93,7 +93,7 @@ def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(subt
         with subtests.test(name=name):
             flight_replay = FlightReplay(recorded(name))
             flight_replay.scout(10_000)
-            flight_replay.seek(flight_replay.reached)
+            flight_replay.go_to(flight_replay.reached)
             env = flight_replay.flight.env
             assert flight_replay.flight.outcome is Outcome.LANDED
             assert MISSIONS[name].medal(float(env.fuel[0]), float(env.time[0])) == 3
@@ -199,21 +199,21 @@ def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
     assert flight_readouts(env)["drift"].figure == "0.0"
 
 
-def test_what_surrounds_a_flight_is_told():
-    def told(name: str, seconds: float = 0.0) -> list[str]:
+def test_what_surrounds_a_flight_is_said():
+    def words_of(name: str, seconds: float = 0.0) -> list[str]:
         flight = Flight(0, None, mission=name)
         flight.env.steps[:] = round(60 * seconds)
         return list(surroundings(flight.env))
 
-    assert told("fall") == []
-    assert "2.3 times" in told("mars")[0]
+    assert words_of("fall") == []
+    assert "2.3 times" in words_of("mars")[0]
     mars = Flight(0, None, mission="mars")
     mars.env.steps[:] = 75
     assert wind(mars.env) == pytest.approx(0.1, abs=0.05)
-    assert told("outage", 1.0) == ["The main engine fails in 1.0 s"]
-    assert told("outage", 3.0) == ["No main engine for 1.0 s"]
-    assert told("outage", 5.0) == []
-    assert told("ferry")[0].startswith("The pad goes right")
+    assert words_of("outage", 1.0) == ["The main engine fails in 1.0 s"]
+    assert words_of("outage", 3.0) == ["No main engine for 1.0 s"]
+    assert words_of("outage", 5.0) == []
+    assert words_of("ferry")[0].startswith("The pad goes right")
 
 
 def test_beside_the_player_flies_the_network_or_a_landing_that_was_recorded(open_game: Open, monkeypatch):

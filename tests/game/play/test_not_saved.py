@@ -45,8 +45,8 @@ def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: Dee
     assert flight.wrecked
     by_rule = {Mode.TOLERANCE: texts.NOT_SAVED_TOLERANCE, Mode.GUARDIAN: texts.NOT_SAVED_BY_VALUES}
     assert chance.seconds is not None
-    told = texts.LAST_CHANCE.format(seconds=f"{chance.seconds:.1f}")
-    assert why_not_saved(flight, chance) == f"{by_rule[mode]} {told}"
+    sentence = texts.LAST_CHANCE.format(seconds=f"{chance.seconds:.1f}")
+    assert why_not_saved(flight, chance) == f"{by_rule[mode]} {sentence}"
 
 
 def test_what_would_have_saved_it_does(agent: DeepQAgent):

@@ -119,7 +119,7 @@ class Reader:
         return set()
 
     def lessons(self, most: int = 6000) -> Iterator[str]:
-        """Do as told until all is done; the lessons, as they come."""
+        """Do as the lessons say until all is done; the lessons, as they come."""
         last = ""
         for _ in range(most):
             if self.challenge.through:
@@ -217,7 +217,7 @@ def test_only_the_very_first_flight_teaches(open_game: Open):
     assert play(driver).challenge.free
 
 
-def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+def test_a_crash_is_reported_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
     for _ in range(2):
         driver.key(pygame.K_n)  # to the fall, and the braking
@@ -236,7 +236,7 @@ def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open,
     assert drawn.words.count(reason) == 1
 
 
-def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
+def test_who_rises_while_braking_is_asked_to_let_go(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
     challenge = tutorial(driver)
     for _ in range(2):
@@ -287,7 +287,7 @@ def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes
     assert play(driver).flight.hand is StickHolder.HUMAN
 
 
-def test_who_has_tipped_over_is_told_to_turn_before_anything_else(open_game: Open):
+def test_who_has_tipped_over_is_asked_to_turn_before_anything_else(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
     driver.key(pygame.K_UP)
     flight, controls = play(driver).flight, driver.app.context.controls
@@ -363,7 +363,7 @@ def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: 
 
 
 @pytest.mark.parametrize("device", DEVICES)
-def test_who_holds_on_to_the_engine_is_warned_lost_told_why_and_goes_on_by_letting_go(open_game: Open, device: str):
+def test_who_holds_on_to_the_engine_is_warned_lost_shown_why_and_goes_on_by_letting_go(open_game: Open, device: str):
     pupil = reader(open_game, device)
     pupil.driver.frames(2)
     pupil.hold({MAIN})

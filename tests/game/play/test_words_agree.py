@@ -30,7 +30,7 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import challenge_of, fly_out, kept, play
 from tests.support.reading import OnlyFlies, Reading, Weighs, flew, pattern
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
 
@@ -55,7 +55,7 @@ def flown_on(context: Context, **more: object) -> PlayScene:
     replay = recorded(context, **more)
     flight_replay = FlightReplay(replay.record)
     flight_replay.scout(40)
-    flight_replay.seek(30)
+    flight_replay.go_to(30)
     return fly_on(replay.context, replay.record, flight_replay)
 
 
@@ -120,7 +120,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
 
 def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, scene: str, settings: dict) -> Reading:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-    settle(context, **settings)
+    save_settings(context, **settings)
     reading = Reading(open_game(SCENES[scene]), monkeypatch)
     flight = reading.driver.top.flight
     assert (flight.copilot is not None) == (flight.network is not None and flight.shares)  # or nothing is shared here
@@ -176,7 +176,7 @@ def barred(entry: Entry) -> str:
 
 
 def assert_book_agrees(reading: Reading, entry: Entry) -> None:
-    """Open the logbook at that flight: it is told as the card told it."""
+    """Open the logbook at that flight: it reads as the card read."""
     from game.core.scene import Push
 
     reading.driver.app.scenes.apply(Push(LogbookScene(reading.driver.app.context)))
@@ -192,7 +192,7 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
 
 @pytest.mark.parametrize("network", [OnlyFlies(), None])
 def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, monkeypatch, network: object):
-    settle(context, assist=0.6)
+    save_settings(context, assist=0.6)
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", network, "it is gone"))
     reading = Reading(open_game(PlayScene, 4), monkeypatch)
     reading.check(3)
@@ -243,7 +243,7 @@ def test_a_replay_says_who_flew_from_its_first_moment_on(
     reading = Reading(open_game(recorded, hand=hand), monkeypatch)
     reading.driver.key(pygame.K_SPACE)
     for step in (0, 1, 20):
-        reading.driver.top.seek(step)
+        reading.driver.top.go_to(step)
         assert reading.page().flew == {"you" if hand is StickHolder.HUMAN else "network"}
 
 
@@ -268,7 +268,7 @@ LOSSES += [
 
 
 @pytest.mark.parametrize(("scene", "settings", "way", "outcome"), LOSSES)
-def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
+def test_a_flight_that_is_no_landing_is_described_alike_everywhere(
     open_game: Open, context: Context, monkeypatch, scene: str, settings: dict, way: str, outcome: Outcome
 ):
     reading = begin(open_game, context, monkeypatch, scene, settings)

@@ -108,10 +108,10 @@ def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game
     reading = Reading(open_game(make), monkeypatch)
     driver, scene = reading.driver, reading.driver.top
     learner = scene.run
-    told: list[WorkerState | None] = [None]
-    monkeypatch.setattr(TrainingRun, "state", property(lambda _: told[0]))
+    current: list[WorkerState | None] = [None]
+    monkeypatch.setattr(TrainingRun, "state", property(lambda _: current[0]))
     for state in (*STATES, *reversed(STATES)):
-        told[0] = state
+        current[0] = state
         quiet = {name: lambda *_: None for name in ("pause", "resume", "stop", "close", "step", "send", "set_pace")}
         learner._worker = state and SimpleNamespace(
             state=state, problem="the disk is full", gone=True, poll=list, **quiet

@@ -9,14 +9,14 @@ from game.core import texts
 from game.input.controls import Command
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.screens import SCREENS, settle
+from tests.support.screens import SCREENS, save_settings
 
 Open = Callable[..., Driver]
 
 
 @pytest.fixture
 def unhurried(context: Context) -> None:
-    settle(context)
+    save_settings(context)
 
 
 @pytest.mark.usefixtures("unhurried")

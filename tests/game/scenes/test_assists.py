@@ -1,4 +1,4 @@
-"""Assists: chosen on their page, told on the card, kept apart in the logbook; and one switch for the whole game."""
+"""Assists: chosen on their page, named on the card, kept apart in the logbook; and one switch for the whole game."""
 
 from collections.abc import Callable
 
@@ -20,7 +20,7 @@ from game.ui.switch_scan import DWELL, HELD
 from tests.support.driver import Driver
 from tests.support.one_switch import SlowSwitch
 from tests.support.player import DEVICES, Player
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
 
@@ -31,7 +31,7 @@ ROOM = ("wider_pads", "untimed")
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, context: Context, device: str):
-    settle(context)
+    save_settings(context)
     before = {name: getattr(context.settings, name) for name in (*HANDS, *ROOM)}
     for group, names in (("flights", ROOM), ("controls", HANDS)):  # the last one makes the keys a switch
         player = Player(open_game(SettingsScene, group), device)
@@ -42,8 +42,8 @@ def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, cont
     assert {name: saved[name] for name in before} == {name: not value for name, value in before.items()}
 
 
-def test_a_landing_with_assists_is_told_kindly_and_kept_apart(open_game: Open, context: Context):
-    settle(context, wider_pads=True, untimed=True, pace=0.5)
+def test_a_landing_with_assists_is_reported_kindly_and_kept_apart(open_game: Open, context: Context):
+    save_settings(context, wider_pads=True, untimed=True, pace=0.5)
     player = Player(open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"])), "keys")
     play = player.top
     assert play.flight.env.limits.time == UNHURRIED
@@ -65,7 +65,7 @@ def test_a_landing_with_assists_is_told_kindly_and_kept_apart(open_game: Open, c
 
 
 def test_a_press_for_thrust_is_named_and_counts_like_any_other(open_game: Open, context: Context):
-    settle(context, toggle_thrust=True)
+    save_settings(context, toggle_thrust=True)
     game = open_game(PlayScene, 3)
     game.frames(3)
     game.key(pygame.K_UP)
@@ -79,7 +79,7 @@ def test_a_press_for_thrust_is_named_and_counts_like_any_other(open_game: Open, 
 
 
 def test_wider_pads_chosen_before_the_first_touch_are_there_at_once(open_game: Open, context: Context):
-    settle(context)
+    save_settings(context)
     game = open_game(PlayScene, 3)
     game.frames(3)
     play = game.top
@@ -139,7 +139,7 @@ class Switch:
 def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
     """From the menu to a flight, a landing by a slow hand, the card, another start, the pause, and back to the menu."""
     for device in ("keys", "pad", "mouse"):
-        settle(context, one_switch=True)
+        save_settings(context, one_switch=True)
         game = open_game(MenuScene)
         game.frames(5)
         game.skip(100)
@@ -175,7 +175,7 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
 
 
 def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: Open, context: Context):
-    settle(context, one_switch=True, pace=0.9)
+    save_settings(context, one_switch=True, pace=0.9)
     game = open_game(SettingsScene, "flights")
     game.skip(20)
     switch = Switch(game, "keys")

@@ -154,7 +154,7 @@ def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     assert notes == [texts.TRAIN_KEPT]
 
 
-def test_a_process_that_dies_is_told_of_and_another_can_be_started(beside: Driver):
+def test_a_process_that_dies_is_reported_and_another_can_be_started(beside: Driver):
     scene = beside.top
     beside.key(pygame.K_RETURN)
     wait(beside, lambda: scene.run.state is WorkerState.RUNNING)
@@ -267,7 +267,7 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
 
 
 def run_with_moments(driver: Driver) -> None:
-    """Give the run a few seconds with filters that can be told apart."""
+    """Give the run a few seconds with filters that can be distinguished."""
     run = driver.top.run
     for second in range(1, 10):
         images = np.full((5, 4, 4), 0.01 * second, np.float16)

@@ -118,7 +118,7 @@ def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(ga
     assert [key for key in heard if "crash" in key] == ["crash" if reduced else "slow_crash"]
 
 
-def test_the_reason_of_a_crash_is_told_on_the_spot_before_the_card(game: Driver, written: list[str]):
+def test_the_reason_of_a_crash_is_shown_on_the_spot_before_the_card(game: Driver, written: list[str]):
     crash(game)
     written.clear()
     game.frames(3)
@@ -127,7 +127,7 @@ def test_the_reason_of_a_crash_is_told_on_the_spot_before_the_card(game: Driver,
 
 
 @pytest.mark.parametrize("reduced", [False, True])
-def test_contact_light_is_told_when_both_feet_are_down_and_then_no_more(
+def test_contact_light_is_announced_when_both_feet_are_down_and_then_no_more(
     game: Driver, written: list[str], reduced: bool
 ):
     game.app.context.settings.reduced_motion = reduced

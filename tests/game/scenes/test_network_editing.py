@@ -126,7 +126,7 @@ def test_a_link_is_picked_and_cut_without_a_mouse(train: Driver, device: str) ->
     assert weight(train, link) == before
 
 
-def test_it_learns_on_when_it_is_told_to_and_the_swarm_says_how_it_stands(train: Driver) -> None:
+def test_it_learns_on_when_it_is_asked_to_and_the_swarm_says_how_it_stands(train: Driver) -> None:
     scene = train.top
     train.click(scene.inside.view.centres[0][1])
     train.frames(2)
@@ -150,7 +150,7 @@ def test_it_learns_on_when_it_is_told_to_and_the_swarm_says_how_it_stands(train:
 
 def test_an_earlier_moment_cannot_be_edited_nor_a_run_that_has_ended(train: Driver) -> None:
     scene = train.top
-    scene.rewind.seek(scene.run.history["decisions"][-1] / 2)
+    scene.rewind.go_to(scene.run.history["decisions"][-1] / 2)
     train.frames(2)
     train.click(scene.inside.view.centres[1][2])
     assert editing(train).picked is None

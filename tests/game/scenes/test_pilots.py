@@ -83,7 +83,7 @@ def test_no_file_flies_before_it_was_chosen_in_this_game(open_game: Open, contex
 
 
 @pytest.mark.parametrize("fails", ["editor", "disk"])
-def test_what_goes_wrong_with_a_new_file_is_told(
+def test_what_goes_wrong_with_a_new_file_is_reported(
     watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str], fails: str
 ):
     def refuse(*_: object) -> None:
@@ -93,11 +93,11 @@ def test_what_goes_wrong_with_a_new_file_is_told(
     watching.key(pygame.K_o)
     watching.press_on(texts.PILOTS_WORDS["act"][2])
     folder = context.user_dir / "pilots"
-    told = watching.top._said
+    message = watching.top._said
     if fails == "editor":
-        assert told == texts.PILOTS_NO_EDITOR.format(path=folder / "pilot.py")
+        assert message == texts.PILOTS_NO_EDITOR.format(path=folder / "pilot.py")
     else:
-        assert told == texts.PILOTS_NOT_WRITTEN.format(path=folder, reason="No space left")
+        assert message == texts.PILOTS_NOT_WRITTEN.format(path=folder, reason="No space left")
         assert not watching.top._files
 
 
@@ -154,7 +154,7 @@ def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, c
     assert watching.widget(texts.PILOTS_MEASURE).box.topleft == place
 
 
-def test_what_is_wrong_with_a_measured_file_is_told(watching: Driver, context: Context, monkeypatch):
+def test_what_is_wrong_with_a_measured_file_is_reported(watching: Driver, context: Context, monkeypatch):
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
     shelf.Shelf(context.user_dir).new().write_text("def act(o): return 9")
     watching.key(pygame.K_o)
@@ -164,14 +164,14 @@ def test_what_is_wrong_with_a_measured_file_is_told(watching: Driver, context: C
     assert shelf.Shelf(context.user_dir).measured() == []
 
 
-def test_each_key_tells_what_it_did_while_all_stands_still(watching: Driver):
+def test_each_key_says_what_it_did_while_all_stands_still(watching: Driver):
     watching.key(pygame.K_SPACE)
     watch = scene(watching)
     said = {}
     for key in (pygame.K_PERIOD, pygame.K_q, pygame.K_z, pygame.K_m, pygame.K_n, pygame.K_r, pygame.K_PLUS):
         watching.key(key)
-        assert watch._told not in said.values(), pygame.key.name(key)
-        said[key] = watch._told
+        assert watch._message not in said.values(), pygame.key.name(key)
+        said[key] = watch._message
     assert np.all([said.values()])
 
 

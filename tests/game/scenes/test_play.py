@@ -177,7 +177,7 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
     assert play(driver).network.problem[:18] in driver.said  # a long one is shortened in its middle
 
 
-def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_other_flight(open_game: Open, context):
+def test_a_disk_that_is_full_at_the_end_of_a_flight_is_reported_and_harms_no_other_flight(open_game: Open, context):
     resource = pytest.importorskip("resource")
     driver = open_game(PlayScene, seed=1)
     crash(driver)
@@ -244,7 +244,7 @@ def test_hints_come_with_the_setting_and_go_with_it(begin: Open, written: list[s
     driver.app.context.settings.show_hints = hints
     written.clear()
     driver.frames(1)
-    assert texts.MAIN_ENGINE in written  # the keys that fly are told on the first screen in any case
+    assert texts.MAIN_ENGINE in written  # the keys that fly are shown on the first screen in any case
     assert (texts.HINT_HAND_OVER in written) is hints
     start_at(driver, 0.0, 2.6, 0.0, -6.0, 0.0, 0.0)
     driver.frames(120)

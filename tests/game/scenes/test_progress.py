@@ -22,7 +22,7 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed
 from tests.support.player import DEVICES, Player
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
 
@@ -43,7 +43,7 @@ def files(context: Context) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_progress_is_put_away_after_a_question_and_brought_back(open_game: Open, context: Context, device: str):
-    settle(context, learnt={"neuron": 3}, chapter="plane", wider_pads=True)
+    save_settings(context, learnt={"neuron": 3}, chapter="plane", wider_pads=True)
     fly(context)
     before = files(context)
     player = Player(open_game(SettingsScene, "flights"), device)
@@ -102,7 +102,7 @@ def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
 
 def test_nothing_flown_is_nothing_lost(context: Context):
     progress = Progress(context.user_dir, context.settings)
-    assert (progress.told.flights, progress.restorable) == (0, False)
+    assert (progress.figures.flights, progress.restorable) == (0, False)
     progress.reset()
     progress.restore()
     assert files(context) == {}
@@ -137,7 +137,7 @@ def test_one_volume_turns_all_others_down_and_mute_turns_all_off():
 
 @pytest.mark.parametrize("scene", [MenuScene, SettingsScene, lambda context: PlayScene(context, 3)])
 def test_a_key_mutes_everywhere_and_says_so(open_game: Open, context: Context, scene):
-    settle(context)
+    save_settings(context)
     game = open_game(scene)
     for muted, said in ((True, texts.SOUND_NOW_OFF), (False, texts.SOUND_NOW_ON)):
         game.key(pygame.K_F10)

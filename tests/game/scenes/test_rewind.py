@@ -192,14 +192,14 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     scene = driver.top
     driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 500)
     driver.frames(14)
-    scene.rewind.seek(decisions / 2)
+    scene.rewind.go_to(decisions / 2)
     driver.frames(2)
     assert scene.rewind.swarm_state is scene.past_swarm.swarm_state is None
     checkpoint = scene.run.history.checkpoint_at(scene.moment)
     assert np.array_equal(scene.inside.network.values, checkpoint.values)
     began = scene.run.swarms.begins
     assert began is not None
-    scene.rewind.seek(began + 100)
+    scene.rewind.go_to(began + 100)
     assert scene.rewind.swarm_state
 
 
@@ -211,8 +211,8 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     driver.form.focus(scrubber(driver))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
     assert scene.moment is None
-    scene.rewind.seek(100)
-    scene.rewind.seek_share(0.5)
+    scene.rewind.go_to(100)
+    scene.rewind.go_to_share(0.5)
     assert scene.moment is None
 
 
@@ -230,7 +230,7 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     if values is not None:  # a checkpoint of another network
         history.append(Checkpoint(1.0, 100, 0.0, values))
     driver.frames(14)
-    driver.top.rewind.seek(10.0)
+    driver.top.rewind.go_to(10.0)
     driver.frames(14)
     assert driver.top.moment == 300
     assert driver.top.rewind.swarm_state is None

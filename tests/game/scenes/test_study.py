@@ -20,7 +20,7 @@ from tests.support.studies import shown_study
 ROOT = Path(__file__).parents[3]
 
 
-def test_trials_stand_by_their_results_and_the_chosen_one_is_told(open_game, written):
+def test_trials_stand_by_their_results_and_the_chosen_one_is_described(open_game, written):
     driver = open_game(made)
     driver.frames(5)
     assert [trial.number for trial in driver.top.items] == [*range(9)]

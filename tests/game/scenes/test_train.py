@@ -158,7 +158,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     assert scene.run.state is WorkerState.RUNNING
 
 
-def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
+def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> None:
     start(train)
     scene = train.top
     (scene.library.folder / "mine").mkdir()
@@ -303,7 +303,7 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 
 
 @pytest.mark.slow
-def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
+def test_a_dead_worker_is_reported_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
     beside.unseen = True
     start(beside)
     scene = beside.top
@@ -318,7 +318,7 @@ def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tm
     assert (run.name, run.problem) == ("saved all the same", "")
 
 
-def test_numbers_that_run_away_are_told(train: Driver) -> None:
+def test_numbers_that_run_away_are_reported(train: Driver) -> None:
     wild = SMALL.changed(cost="mse", reward_scale=1.0, reward_weights=RewardWeights(terminal=1e30))
     train.top.knobs.set_config(wild, 0)
     train.key(pygame.K_RETURN)

@@ -314,7 +314,7 @@ def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> 
     assert scene.laboratory.chosen.guess is None
 
 
-def test_why_a_part_matters_is_told_only_where_it_was_missed() -> None:
+def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     for came in (None, *VERDICTS):
         assert bool(why(came, "no_replay")) == (came not in (None, "as_well")), came
         assert not why(came, "")
@@ -345,8 +345,8 @@ def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch)
     for _ in range(40):  # in each frame, the number that is written is the caption's
         train.frames(1)
         words = texts.CHART_CAPTIONS["epsilon"]
-        told = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
-        assert epsilon.painted_caption in told | {words["all"]} or epsilon.caption != epsilon.painted_caption
+        captions = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
+        assert epsilon.painted_caption in captions | {words["all"]} or epsilon.caption != epsilon.painted_caption
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
@@ -354,7 +354,7 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     scene, run = train.top, train.top.run
     train.wait(lambda: min(len(run.swarms.moments), len(run.twin.swarms.moments)) >= 3)
     train.frames(2)
-    scene.rewind.seek(float(run.swarms.moments[0]))
+    scene.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
     assert scene.moment == run.swarms.moments[0]
     shown = [swarm.swarm_state.decisions for swarm in scene.split_view.swarms]
@@ -376,5 +376,5 @@ def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
         (other, low, high), (healthy, least, most) = (
             [100 * part for part in shares[each]] for each in (name, "modern")
         )
-        told = {"other": other, "low": low, "high": high, "healthy": healthy, "least": least, "most": most}
-        assert measured(name) == texts.LAB_MEASURED.format(seeds=4, decisions=100_000, **told), name
+        figures = {"other": other, "low": low, "high": high, "healthy": healthy, "least": least, "most": most}
+        assert measured(name) == texts.LAB_MEASURED.format(seeds=4, decisions=100_000, **figures), name

@@ -16,7 +16,7 @@ from game.ui.context import Context
 from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.player import DEVICES, Player
-from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle
+from tests.support.screens import OVER_OTHERS, SCREENS, flown, save_settings
 from tests.support.tour import scene_types
 
 # Flown rather than walked, shown once something has failed, or a part of others.
@@ -28,7 +28,7 @@ def open_screen(
     request: pytest.FixtureRequest, open_game: Callable[..., Driver], context: Context
 ) -> Callable[..., Player]:
     def open_it(make: Callable[[Context], Scene]) -> Player:
-        settle(context)
+        save_settings(context)
         player = Player(open_game(make), request.param)
         player.frames(3)
         return player

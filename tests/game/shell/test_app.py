@@ -22,7 +22,7 @@ from tests.support.driver import Driver
 
 
 class Probe(Scene):
-    """A scene that records what it is given and does as it is told."""
+    """A scene that records what it is given and does as it is asked."""
 
     def __init__(self) -> None:
         self.events: list[pygame.event.Event] = []
@@ -170,12 +170,12 @@ def unbuildable(_: Context) -> Probe:
 
 
 @pytest.mark.parametrize("way", ["first", "over another"])
-def test_a_scene_that_cannot_be_built_is_told_of_and_the_others_are_closed(open_game, way: str):
+def test_a_scene_that_cannot_be_built_is_reported_and_the_others_are_closed(open_game, way: str):
     below = Holder()
     game = open_game(unbuildable if way == "first" else below)
     if way != "first":
         game.app.show(unbuildable)
-        assert below.left == 0  # it was not even told that another was to come
+        assert below.left == 0  # it did not even learn that another was to come
     game.frames(2)
     assert game.top_name == "ErrorScene"
     assert below.closed == (way != "first")

@@ -8,7 +8,7 @@ from game.drawing.tokens import VIEW_SIZE
 from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.screens import crashed, opened, settle
+from tests.support.screens import crashed, opened, save_settings
 
 Open = Callable[..., Driver]
 NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
@@ -36,7 +36,7 @@ LONG = "The game is open in another window, which keeps the settings. What you s
 def test_a_long_note_lies_on_no_word_pad_or_craft_before_a_flight_and_on_no_card_after_it(
     open_game: Open, context: Context, size: tuple[int, int], text_size: str
 ):
-    settle(context, text_size=text_size)
+    save_settings(context, text_size=text_size)
     driver = opened(open_game, "Play")
     driver.resize(size)
     for happens in (lambda _: None, crashed):

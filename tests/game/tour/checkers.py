@@ -163,32 +163,32 @@ NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES:
        Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
 
 
-def keys_told(driver: Driver) -> Counter[str]:
+def keys_named(driver: Driver) -> Counter[str]:
     """Draw a frame, and count the keys that its hints name."""
-    told: Counter[str] = Counter()
+    named: Counter[str] = Counter()
     text = Canvas.text
 
     def noted(canvas: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
         if more.get("colour", INK) == INK and more.get("weight") == "medium":  # as keys are written
-            told[string] += 1
+            named[string] += 1
         return text(canvas, string, position, **more)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Canvas, "text", noted)
         driver.app.draw()
-    return told
+    return named
 
 
 def hints_name_the_players_own_keys(visit: Visit) -> None:
     keys = visit.driver.app.context.controls.keys
-    before = keys_told(visit.driver)
+    before = keys_named(visit.driver)
     bindings = Bindings(KEYBOARD)
     usual = {key_name(KEYBOARD.standard[meaning][0]): key_name(code) for meaning, code in NEW.items()}
     for meaning, code in NEW.items():
         bindings.bind(meaning, code)
     keys.follow(bindings.to_dict())
     visit.driver.frames(2)
-    after = keys_told(visit.driver)
+    after = keys_named(visit.driver)
     keys.follow({})
     actions = [entry for entry in visit.driver.top.actions() if isinstance(entry, Action)]
     fixed = {key_name(entry.key) for entry in actions if not isinstance(entry.key, Command)} | {Controls().arrows}
@@ -265,11 +265,11 @@ def _press_all(stop: Stop, driver: Driver, recorder: Recorder) -> None:
     recorder.take()
     for pad in (False, True):
         controls.used_pad = 0 if pad else None
-        told = {entry.hint: entry for entry in scene.actions() if isinstance(entry, Action) and entry.hint}
+        bound = {entry.hint: entry for entry in scene.actions() if isinstance(entry, Action) and entry.hint}
         for meaning, place in driver.hints().items():
             driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
-            assert recorder.take() == [told.pop(meaning).key], f"a click on {meaning}"
-        assert not told or stop.screen in ("DigitsScene", "TrainScene")
+            assert recorder.take() == [bound.pop(meaning).key], f"a click on {meaning}"
+        assert not bound or stop.screen in ("DigitsScene", "TrainScene")
 
 
 CHECKERS: tuple[Callable[[Visit], None], ...] = (

@@ -10,7 +10,7 @@ from game.flight.logbook import LOGBOOK, Records
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.games import OpenGame
-from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, crashed, opened, settle, shared
+from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, crashed, opened, save_settings, shared
 from tests.support.tour import stock
 
 
@@ -35,7 +35,7 @@ class Stop:
     def open(self, open_game: OpenGame, context: Context) -> Driver:
         """Open it at the largest size of text."""
         self.prepare(context)
-        settle(context, text_size="largest", **self.settings)
+        save_settings(context, text_size="largest", **self.settings)
         driver = opened(open_game, self.screen)
         self.happens(driver)
         return driver
@@ -54,9 +54,9 @@ def keys(*pressed: int, frames: int = 0) -> Callable[[Driver], None]:
 def listed(context: Context) -> None:
     """Fill every list, the logbook also with an entry of which much is to be said."""
     stock(context)
-    told = {"course": "ferry", "medal": 3, "gravity": 0.8, "outcome": "OUT_OF_BOUNDS", "human": 0.5}
+    fields = {"course": "ferry", "medal": 3, "gravity": 0.8, "outcome": "OUT_OF_BOUNDS", "human": 0.5}
     usual = Records(context.user_dir).entries()[0]
-    entries = [replace(usual, **told), usual, replace(usual, spawn="rung_3"), replace(usual, course="descent", leg=2)]
+    entries = [replace(usual, **fields), usual, replace(usual, spawn="rung_3"), replace(usual, course="descent", leg=2)]
     with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
         file.writelines(3 * [json.dumps(asdict(entry)) + "\n" for entry in entries])
 

@@ -55,9 +55,9 @@ def test_while_something_else_waits_no_hint_asks(context: Context, monkeypatch: 
     monkeypatch.setattr(advice.adviser, "advise", lambda *_: Hint("overfed", {"num_envs": 256}))
     advice.follow(NetworkHealth())
     assert advice.shown
-    advice.hush(True)
+    advice.silence(True)
     assert not advice.shown
-    advice.hush(False)
+    advice.silence(False)
     assert list(words_of(advice, context)) == [texts.HINT_APPLY, texts.HINT_DISMISS]
 
 

@@ -146,21 +146,21 @@ def test_a_place_on_the_axis_is_a_moment_of_the_run(axis: int, place: float) -> 
 def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     config = PRESETS[preset].changed(num_envs=1, hidden=(4,))
     session = LanderSession.live(config, 0, keep=tmp_path / "run")
-    told = next(session)
+    messages = next(session)
     for _ in range(3):
         next(session)
     session.close()
     assert History.read(tmp_path / "run").reward_scale == config.reward_scale
 
-    class Tells:
+    class StubWorker:
         state = WorkerState.RUNNING
 
         def __init__(self, *_: object, **__: object) -> None: ...
         def set_pace(self, _: object) -> None: ...
         def poll(self) -> tuple[object, ...]:
-            return tuple(message for message in told if isinstance(message, RunStarted))
+            return tuple(message for message in messages if isinstance(message, RunStarted))
 
-    monkeypatch.setattr("game.training.run.Worker", Tells)
+    monkeypatch.setattr("game.training.run.Worker", StubWorker)
     run = TrainingRun(LANDERS, Library(tmp_path))
     run.begin(config, 0)
     run.poll()

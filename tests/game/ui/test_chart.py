@@ -39,7 +39,7 @@ def drawn(canvas: Canvas) -> Callable[[Chart], np.ndarray]:
     return draw
 
 
-def settle(chart: Chart, steps: int = 200) -> None:
+def update_chart(chart: Chart, steps: int = 200) -> None:
     for _ in range(steps):
         chart.update()
 
@@ -49,7 +49,7 @@ def chart_of(y: object, x: object = None, **options: object) -> Chart:
     values = np.asarray(y, float)
     place = np.arange(len(values), dtype=float) if x is None else np.asarray(x, float)
     chart.set([Series(place, values, "this run")], (0.0, max(1.0, len(values) - 1.0)))
-    settle(chart)
+    update_chart(chart)
     return chart
 
 
@@ -204,7 +204,7 @@ def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypa
         ],
         (0.0, 20.0),
     )
-    settle(chart)
+    update_chart(chart)
     chart.draw(canvas)
     read.clear()
     chart.hover(chart.place(12.0, 2.0))
@@ -234,7 +234,7 @@ def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.Mo
     assert len(boxes) == 4
 
 
-def test_the_cursor_is_shared_and_the_values_are_told_where_the_mouse_is(canvas: Canvas) -> None:
+def test_the_cursor_is_shared_and_the_values_are_shown_where_the_mouse_is(canvas: Canvas) -> None:
     top, bottom = Chart((40, 40, 300, 120), "A"), Chart((40, 200, 200, 120), "B")
     for chart in (top, bottom):
         chart.set([Series([0.0, 10.0], [0.0, 1.0], "this run")], (0.0, 10.0))
@@ -277,7 +277,7 @@ def test_the_same_numbers_are_not_drawn_again(canvas: Canvas) -> None:
     for last in (29.0, 28.5):  # an array that changes in place
         memory[-1], redraws = last, chart.redraws
         chart.set([Series(memory, memory, "this run")], (0, 29))
-        settle(chart)
+        update_chart(chart)
         chart.draw(canvas)
         assert chart.redraws > redraws
 
@@ -289,7 +289,7 @@ def test_runs_behind_follow_the_axes(drawn: Callable[[Chart], np.ndarray]) -> No
     pictures = []
     for end in (20.0, 40.0):
         chart.set(runs, (0.0, end))
-        settle(chart)
+        update_chart(chart)
         pictures.append(drawn(chart))
     fresh.set(runs, (0.0, 40.0))
     assert np.array_equal(drawn(fresh), pictures[1])
@@ -373,18 +373,18 @@ def test_a_single_wild_value_is_marked_though_the_line_hardly_shows_it(drawn: Ca
     assert np.ptp(rows) < 0.2 * plain.shape[1]  # it does not drag the line along
 
 
-def test_a_turned_knob_is_told_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_turned_knob_is_listed_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
     from game.ui import chart as module
 
-    told: list[list[str]] = []
-    monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: told.append(lines))
+    tooltips: list[list[str]] = []
+    monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: tooltips.append(lines))
     chart = Chart(BOX, "RETURN")
     ticks = [Tick(9.9, "knob", "knob"), Tick(10.0, "checkpoint"), Tick(15.0, "another")]
     chart.set([Series([0.0, 20.0], [0.0, 1.0], "this run")], (0.0, 20.0), ticks)
     for x in (10.0, 15.0, 18.0):
         chart.hover(chart.place(x, 0.5))
         chart.draw(canvas)
-    assert [lines[1:] for lines in told] == [["knob"], ["another"], []]
+    assert [lines[1:] for lines in tooltips] == [["knob"], ["another"], []]
 
 
 UGLY = {
@@ -415,7 +415,7 @@ def test_ugly_numbers_are_drawn(canvas: Canvas) -> None:
             )
             for point in ((60.0, 500.0), (405.0, 577.0), None):
                 chart.hover(point)
-                settle(chart, 30)
+                update_chart(chart, 30)
                 chart.draw(canvas)
             low, high = chart.limits
             assert np.isfinite([low, high]).all(), name

@@ -17,7 +17,7 @@ from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.rows import ChoiceRow
 from tests.support.driver import Driver
-from tests.support.screens import settle
+from tests.support.screens import save_settings
 from tests.support.written import Written
 
 LONG = "One switch fires the engine, and the jets steer by themselves, so that a single key is enough to land. " * 2
@@ -50,7 +50,7 @@ class Page(PanelScene):
 
 @pytest.fixture
 def page(open_game, context: Context) -> Driver:
-    settle(context)
+    save_settings(context)
     driver: Driver = open_game(Page)
     driver.frames(2)
     return driver

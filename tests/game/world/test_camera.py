@@ -143,7 +143,7 @@ def test_a_blow_shakes_the_view_a_little_and_not_for_long():
     assert max(away[60:]) == 0.0
 
 
-def test_a_camera_that_is_told_nothing_rests():
+def test_a_camera_that_is_given_nothing_rests():
     assert Camera().view(1.5) == View(1.5)
 
 

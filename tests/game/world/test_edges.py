@@ -32,7 +32,7 @@ def placed(*state: float, area: int = AREA) -> LanderEnv:
 
 @pytest.mark.parametrize(("state", "side"), [((27, 10, 2, 0, 0, 0), "right"), ((-27, 10, -2, 0, 0, 0), "left"),
                                              ((0, 26, 0, 2, 0, 0), "above")])  # fmt: skip
-def test_an_edge_is_told_of_shines_and_sounds_before_it_is_crossed(state: tuple[float, ...], side: str):
+def test_an_edge_is_named_shines_and_sounds_before_it_is_crossed(state: tuple[float, ...], side: str):
     env, sound = placed(*state), Listener()
     [edge] = near_edges(env)
     assert (edge.side, edge.ahead) == (side, True)
