@@ -1,10 +1,11 @@
 """What the sabotage cards say was measured: shares of training flights that landed, over several seeds.
 
-    python -m benchmarks.sabotages [--seeds 4]    # seven runs a seed, some ten seconds of one core each
+    python -m benchmarks.sabotages [--seeds 4] [--only NAME ...]    # a run takes some ten seconds of one core
 
 Each part is taken away from the modern preset, and each run is trained for 100,000 decisions. A share is of the latest
 hundred training flights, with their chance moves; a line gives its mean over the seeds, and the 95 % interval of that
-mean (Student's t), within 0 and 1. The cards read the file that this writes. Another processor learns otherwise from
+mean (Student's t), within 0 and 1. The cards read the file that this writes; with --only, the others' lines stay in it,
+which must be of as many seeds. Another processor learns otherwise from
 the same seed, so single seeds tell nothing.
 """
 
@@ -26,7 +27,7 @@ from ai.files import write_text
 from ai.training.config import PRESETS
 from ai.training.experiments import MEASURED, SABOTAGES, sabotaged
 from ai.training.loop import Training
-from game.scenes.train.laboratory import FILE
+from game.scenes.train.laboratory import FILE, measurements
 
 DECISIONS: Final = 100_000
 
@@ -54,11 +55,15 @@ def main() -> None:
     """Measure each card, print a line for it, and write the file that the cards read."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=4)
-    seeds = parser.parse_args().seeds
-    names = (MEASURED, *SABOTAGES)
+    parser.add_argument("--only", nargs="*", choices=list(SABOTAGES), metavar="NAME", help="cards to measure")
+    arguments = parser.parse_args()
+    seeds, names = arguments.seeds, arguments.only or (MEASURED, *SABOTAGES)
+    found = measurements() if arguments.only else {"seeds": seeds, "shares": {}}
+    if found["seeds"] != seeds:
+        parser.error(f"the other cards were measured with --seeds {found['seeds']}")
+    shares = found["shares"]
     with Pool() as pool:
         landed = pool.starmap(share, [(name, seed) for name in names for seed in range(seeds)], chunksize=1)
-    shares = {}
     for number, name in enumerate(names):
         each = landed[number * seeds : (number + 1) * seeds]
         mean, low, high = mean_of_shares(each)

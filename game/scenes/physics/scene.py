@@ -305,9 +305,9 @@ class PhysicsScene(PanelScene):
             _, ground = view.point(0.0, 0.0)
             canvas.fill(canvas.rect(box.left, ground, box.width, box.bottom - ground), NIGHT0, 0.55)
             canvas.line((box.left, ground), (box.right, ground), MUTE)
-            for start, end in self.exhibit.rules:
-                (left, y), (right, _) = view.points((start, end)).tolist()
-                canvas.line((left, y), (right, y), FAINT)
+            for rule in self.exhibit.rules:
+                start, end = view.points(rule).tolist()
+                canvas.line(tuple(start), tuple(end), FAINT)
             asleep = self.exhibit.world.asleep[0]
             self._outlines.draw(canvas, view, poses, self._lit(), held=self.grip is not None, asleep=asleep)
             if self.contacts_drawn:

@@ -241,8 +241,10 @@ def measurements() -> dict[str, Any]:
 
 
 def measured(name: str) -> str:
-    """Say what was measured of a sabotage, beside the preset that nothing was taken from."""
+    """Say what was measured of a sabotage, beside the preset that nothing was taken from; empty for nothing."""
     found = measurements()
+    if name not in found["shares"]:
+        return ""
     other, healthy = ([100 * part for part in found["shares"][each]] for each in (name, MEASURED))
     figures = dict(zip(("other", "low", "high", "healthy", "least", "most"), (*other, *healthy), strict=True))
     return texts.LAB_MEASURED.format(decisions=found["decisions"], seeds=found["seeds"], **figures)
