@@ -81,11 +81,8 @@ class Credit:
 
     @property
     def header(self) -> str:
-        """Text that says who flies or, after the flight, who flew."""
+        """Text that says who flies."""
         flight = self._flight
-        if flight.over:
-            flew = texts.BOTH_FLEW if flight.share else texts.NETWORK_FLEW
-            return texts.YOU_FLEW if flight.share == 1 else sentence(flew, self.who)
         if flight.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
         if flight.shared and flight.copilot:

@@ -43,7 +43,7 @@ WHO = {
     "The network flies.  Tab  takes back": "network",
 }
 WHO |= {lines[0]: "network" if name == "ALONE" else "both" for name, lines in texts.COPILOT_PANEL_WHY.items()}
-FLEW = {texts.YOU_FLEW: "you", "You and the network flew": "both", "The network flew": "network"}
+FLEW = {texts.YOU_FLEW: "you", "The network flew": "network"}
 COUNTS = [
     *texts.MEDALS[1:],
     texts.MEDAL_GOLD,
