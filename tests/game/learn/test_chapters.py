@@ -289,7 +289,7 @@ def broken(*_: object, **__: object) -> Iterator[tuple[()]]:
 
 def test_a_run_that_fails_is_reported(made: Made, monkeypatch: pytest.MonkeyPatch):
     chapter = made(PayChapter)
-    monkeypatch.setattr("game.scenes.learn.pay.live", broken)
+    monkeypatch.setattr("game.scenes.learn.pay.LanderSession.live", broken)
     chapter.train()
     for _ in range(3):
         chapter.update()

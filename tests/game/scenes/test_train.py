@@ -215,6 +215,7 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     train.frames(3)
     train.key(pygame.K_ESCAPE)
+    train.press_on(texts.PAUSE_LEAVE)
     assert train.top is scene
     train.wait(lambda: scene.run.state is WorkerState.RUNNING)
 
