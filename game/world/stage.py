@@ -123,6 +123,8 @@ class Stage:
         env = self._env
         if ended:
             self._after = self._begin_after()
+        elif env.outcome[0] == Outcome.FLYING:
+            self._after = None  # in Watch, the next flight begins in the same slot
         if self._after is not None:
             self._after.step()
         elif env.outcome[0] != Outcome.CRASHED:

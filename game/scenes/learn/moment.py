@@ -42,7 +42,7 @@ MOMENTS: Final = (
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
 _METRES, _BELOW = 52.0, 1.2  # metres: across the picture, and below the ground
-_ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
+_ANSWERS: Final = (140.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
 

@@ -84,6 +84,10 @@ def test_a_lander_is_one_sprite_and_what_a_crash_leaves_another(calm: bool):
     wreck = stage.sprite()
     assert wreck.image == art.WRECK
     assert (wreck.body is env.lander) is calm  # otherwise it tumbles in a world of its own
+    env.reset()
+    stage.follow(np.array([False]), np.array([False]))
+    assert stage.sprite() == Sprite(env.lander, art.LANDER, art.SIZE), "the next flight, in the same slot"
+    assert stage.pose_after(1.0) is None
 
 
 def test_the_lander_is_painted_by_its_key(monkeypatch: pytest.MonkeyPatch):
