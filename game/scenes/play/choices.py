@@ -28,12 +28,21 @@ class ChoicesScene(PanelScene):
     """Choices over a flight. Each is saved the moment it is made; Escape goes back.
 
     A challenge fixes most of them, so it offers fewer; `helped` are the settings that its own choice of help changes.
+    `lack` says why who would help cannot.
     """
 
     def __init__(
-        self, context: Context, below: Scene, *, begun: bool, free: bool = True, helped: Settings | None = None
+        self,
+        context: Context,
+        below: Scene,
+        *,
+        begun: bool,
+        free: bool = True,
+        helped: Settings | None = None,
+        lack: str = "",
     ) -> None:
         super().__init__(context)
+        self._lack = lack
         self._begun, self._free, self._helped = begun, free, helped or context.settings
         self._behind = StillPicture(below, dimmed=0.7)
         self.build()
@@ -59,7 +68,7 @@ class ChoicesScene(PanelScene):
         words = [*HELP, *([OTHER] if now == OTHER else [])]
         labels = [texts.HELP.get(word, texts.CHOICES_MORE) for word in words]
         column.choice(texts.CHOICES_HELP, labels, words.index(now), lambda index: self._choose_help(words[index]))
-        column.aside(lambda: means(self._helped))
+        column.aside(lambda: (self._lack if self._helped.assist else "") or means(self._helped))
 
     def _choose_help(self, word: str) -> None:
         if word != OTHER:

@@ -214,10 +214,16 @@ class PlayScene(Scene):
 
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""
-        if self.flown.helped.assist > 0 and self.flight.shares and self.flight.copilot is None:
-            network = self.network
-            text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
-            self.context.note(text.format(name=network.name, problem=network.problem))
+        if self.flown.helped.assist > 0 and (lack := self._lack):
+            self.context.note(lack)
+
+    @property
+    def _lack(self) -> str:
+        """Why the network, or the player's own pilot, cannot help; empty if it can, or if none is asked to."""
+        if not self.flight.shares or self.flight.copilot is not None:
+            return ""
+        text = texts.DIAL_NEEDS if self.network.policy else texts.NO_NETWORK
+        return text.format(name=self.network.name, problem=self.network.problem)
 
     def _copy(self) -> None:
         if self.flown.record:
@@ -245,7 +251,8 @@ class PlayScene(Scene):
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""
-        return push("choices", self, begun=self.flown.begun, free=self.challenge.free, helped=self.flown.helped)
+        begun, helped = self.flown.begun, self.flown.helped
+        return push("choices", self, begun=begun, free=self.challenge.free, helped=helped, lack=self._lack)
 
     def choose_network(self, name: str) -> None:
         """Change the network to hand over to, also during a flight."""

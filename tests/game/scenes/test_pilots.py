@@ -13,6 +13,7 @@ from ai.pilots import shelf
 from ai.pilots.own import OwnPilot
 from game.core import texts
 from game.flight import own
+from game.scenes.play.help import choose
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch import pilots
 from game.scenes.watch.pilots import PilotsScene
@@ -20,6 +21,7 @@ from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.inline_worker import InlineWorker
+from tests.support.reading import Reading
 
 Open = Callable[..., Driver]
 GOOD = "def act(o):\n    return 4"
@@ -175,7 +177,9 @@ def test_each_key_says_what_it_did_while_all_stands_still(watching: Driver):
     assert np.all([said.values()])
 
 
-def test_play_hands_over_to_it_and_it_is_no_record(open_game: Open, context: Context):
+def test_play_hands_over_to_it_and_it_is_no_record(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = shelf.Shelf(context.user_dir).new()
     driver = open_game(PlayScene, 3)
     driver.keys(pygame.K_ESCAPE)
@@ -186,6 +190,14 @@ def test_play_hands_over_to_it_and_it_is_no_record(open_game: Open, context: Con
     assert isinstance(play, PlayScene)
     assert play.network.name == "pilot.py"
     assert play.flight.copilot is None  # it has no values to share the stick by
+    choose(context.settings, "guard")
+    reading = Reading(driver, monkeypatch)
+    driver.key(pygame.K_c)
+    reading.page(2)
+    assert "pilot.py can fly, but cannot help you" in " ".join(reading.words)
+    driver.unseen = False
+    driver.key(pygame.K_ESCAPE)
+    choose(context.settings, "off")
     driver.wait(lambda: context.pilot and context.pilot.ready, 60)
     driver.key(pygame.K_TAB)
     driver.wait(lambda: play.flight.over, 60)
