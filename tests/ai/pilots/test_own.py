@@ -290,7 +290,7 @@ def test_a_run_learns_by_a_file_from_nothing(tmp_path: Path):
 def test_a_run_that_goes_on_is_paid_as_before_or_says_that_it_is_not(tmp_path: Path) -> None:
     path, folder = tmp_path / "pay.py", tmp_path / "run"
     path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
-    config = Config(num_envs=8, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1)
+    config = Config(num_envs=64, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1)
 
     def go_on(decisions: int, **options: object) -> tuple[str, float]:
         """What is said at the beginning, and the mean pay of a flight after some decisions."""
@@ -302,9 +302,9 @@ def test_a_run_that_goes_on_is_paid_as_before_or_says_that_it_is_not(tmp_path: P
                 turns.close()
                 return said, points[-1].mean_return
 
-    assert go_on(8_000, pay=path)[1] > 200, "each of some hundred steps pays 3"
-    said, paid = go_on(16_000, resume=folder, pays=(tmp_path / "another.py", path))
+    assert go_on(5_000, pay=path)[1] > 200, "each of some hundred steps pays 3"
+    said, paid = go_on(10_000, resume=folder, pays=(tmp_path / "another.py", path))
     assert (said, paid > 200) == ("", True)
-    said, paid = go_on(32_000, resume=folder)
+    said, paid = go_on(20_000, resume=folder)
     assert "pay.py" in said
     assert paid < 0
