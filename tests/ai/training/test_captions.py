@@ -43,6 +43,8 @@ def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
                             assert figures["before"] < 100 * now["success"] - 5, at
                         case "success", "falls":
                             assert figures["before"] > 100 * now["success"] + 5, at
+                        case "success", "collapsed":
+                            assert figures["best"] == 100 * np.nanmax(run.history["success"]), at
                         case "success", "high":
                             assert now["success"] >= 0.97, at
                         case "success", "crashes" | "hovers" | "leaves" | "none":
@@ -53,7 +55,7 @@ def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
                             assert figures["percent"] == 100 * now["epsilon"], at
                         case "loss", "unknown":
                             assert now["loss"] != now["loss"], at
-    assert {("success", "steady"), ("success", "rises"), ("success", "falls")} <= said
+    assert {("success", each) for each in ("steady", "rises", "falls", "collapsed")} <= said
     assert {("epsilon", "falls"), ("success", ""), ("loss", "rises"), ("loss", "falls")} <= said
 
 
