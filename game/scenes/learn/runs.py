@@ -16,7 +16,7 @@ from ai.environment import Doubles
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
-from ai.training.small_run import SMALL_RUN, Flown, Plan, SmallState, small_runs
+from ai.training.small_run import RECENT, SMALL_RUN, Flown, Plan, SmallState, small_runs
 from game.core import texts
 from game.core.scene import Route
 from game.core.worker import Worker, WorkerState
@@ -343,7 +343,7 @@ class DaringChapter(DuelChapter):
     def caption(self, state: SmallState) -> str:
         if state.landed is None:
             return texts.LEARN_RUNS_NOTHING
-        return texts.LEARN_RUNS_FLIGHTS.format(count=state.flights, landed=_landed(state))
+        return texts.LEARN_RUNS_FLIGHTS.format(count=min(state.flights, RECENT), landed=_landed(state))
 
     def heights(self, values: Doubles) -> Doubles:
         return values
