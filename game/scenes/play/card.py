@@ -170,6 +170,8 @@ class ShownCard:
             rows.styled(sentence, SMALL, MUTE, indent=18)
             if canvas and card.watched:
                 canvas.explain((rows.left, top, rows.width, rows.y - top), texts.EXPLAIN_CARD_SAVED)
+        if card.human == 1:  # nothing to share out
+            return
         rows.gap(18)
         if canvas:
             draw_share(canvas, rows.left, rows.y, rows.width, card.human, card.who)
