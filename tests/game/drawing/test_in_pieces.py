@@ -34,6 +34,7 @@ MOST = A_FRAME + PIECE  # a piece is begun while the frame's share is not used u
 def in_pieces() -> Iterator[None]:
     """Play as in the game; tests of other things have each picture at once."""
     forget_land()
+    finish()  # what other tests have left
     spread(A_FRAME)
     yield
     spread(0)

@@ -234,7 +234,7 @@ def test_the_target_is_a_sum_that_can_be_read_and_says_who_judges(driver: Driver
     assert (texts.LESSON_NEWEST_JUDGES in words) == (not config.target_judges)
     for value in in_points(lesson.next_judged, scale).tolist():
         assert points(value) in words
-    for said in ("No copy stands still", "Layer normalisation"):
+    for said in ("The slower copy only flies", "Layer normalisation"):
         assert (said in " ".join(words)) == (not config.target_judges), "what stands in for the copy"
 
 
