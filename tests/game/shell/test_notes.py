@@ -48,7 +48,7 @@ def test_a_long_note_lies_on_no_word_pad_or_craft_before_a_flight_and_on_no_card
         canvas.turn_page()
         assert canvas.looked_at
         # The largest card in the smallest window leaves room on the row of hints alone.
-        cards = [area for area in canvas.words if area.height > 0.7 * size[1]]
+        cards = [area for area in canvas.words if area.height > 0.6 * size[1]]
         words = cards or canvas.words
         hidden = [area for area in (*words, *canvas.looked_at) if area.colliderect(place)]
         assert not hidden
