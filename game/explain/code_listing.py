@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Shown = tuple[Source, int | None, Mapping[int, str]]  # a function, its lit line, and what stands beside lines
 _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
+_SPARE: Final = 8.0  # figures of one width are a little wider
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
 _BETWEEN: Final = 12.0  # points between code and notes
 _CODE: Final[Colour] = (190, 198, 214)
@@ -37,11 +38,12 @@ def draw_listing(
     """Draw the source in a box, in points; `current` is the number of the lit line, which is kept in sight.
 
     `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They have a column
-    on the right, a third of the box.
+    on the right, in a third of the box, or half of it where a note is long.
     """
     area, notes = pygame.FRect(box), notes or {}
     letter = typeface.digit_width(canvas.grown(LABEL), "code")
-    beside = area.width / 3 if notes else -_BETWEEN
+    widest = max((canvas.text_width(note, size=LABEL) for note in notes.values()), default=0.0) + _SPARE
+    beside = min(max(area.width / 3, widest), area.width / 2) if notes else -_BETWEEN
     room = int((area.width - _NUMBER - beside - _BETWEEN) // letter)
     leading = _LEADING * canvas.grown(LABEL) / LABEL
     canvas.text(source.path, (area.left, area.top + leading * 0.8), size=LABEL, colour=MUTE)

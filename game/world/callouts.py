@@ -148,7 +148,9 @@ class PadFactors:
         return aimed_at
 
     def draw(self, canvas: Canvas, view: View, craft: Doubles) -> None:
-        """Write each factor above its pad; one to which the craft at (x, y) comes near gives way."""
+        """Write each factor above its pad, until the flight is over; one that the craft at (x, y) nears gives way."""
+        if self._flight.over:  # the card says what was earned, and may stand there
+            return
         shift = float(self._flight.env.pad_shift[0])
         metre = view.pixels_per_metre / view.scale
         for pad, meant in zip(self._pads, self.meant.tolist(), strict=False):
