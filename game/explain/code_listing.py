@@ -38,17 +38,22 @@ def draw_listing(
     """Draw the source in a box, in points; `current` is the number of the lit line, which is kept in sight.
 
     `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They have a column
-    on the right, in a third of the box, or half of it where a note is long.
+    on the right, or a row below their line where they need more than half the box.
     """
     area, notes = pygame.FRect(box), notes or {}
     letter = typeface.digit_width(canvas.grown(LABEL), "code")
-    widest = max((canvas.text_width(note, size=LABEL) for note in notes.values()), default=0.0) + _SPARE
-    beside = min(max(area.width / 3, widest), area.width / 2) if notes else -_BETWEEN
+    widths = {number: canvas.text_width(note, size=LABEL) + _SPARE for number, note in notes.items()}
+    below = {number for number, width in widths.items() if width > area.width / 2}  # in a row of its own
+    widest = max((width for number, width in widths.items() if number not in below), default=0.0)
+    beside = max(area.width / 3, widest) if notes else -_BETWEEN
     room = int((area.width - _NUMBER - beside - _BETWEEN) // letter)
     leading = _LEADING * canvas.grown(LABEL) / LABEL
     canvas.text(source.path, (area.left, area.top + leading * 0.8), size=LABEL, colour=MUTE)
     top = area.top + leading * 1.4
-    rows = [row for number, line in source.lines for row in _broken(number, line, max(room, 20))]
+    rows: list[tuple[int, str, bool]] = []
+    for number, line in source.lines:
+        rows += _broken(number, line, max(room, 20))
+        rows += [(number, "", False)] if number in below else []
     most = int((area.bottom - top) // leading)
     shown = _around(rows, current, most)
     for place, (number, text, begins) in enumerate(shown):
@@ -60,9 +65,10 @@ def draw_listing(
         if begins:
             canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
                         colour=NET if lit else FAINT, align="right")  # fmt: skip
-            if note := notes.get(number):
-                canvas.text(note, (area.right - beside, y), size=LABEL, colour=NET if lit else MUTE, tabular=True,
-                            room=beside)  # fmt: skip
+        if number in notes and begins != (number in below) and (begins or not text):
+            start = area.right - beside if begins else area.left + _NUMBER
+            colour = NET if lit else MUTE
+            canvas.text(notes[number], (start, y), size=LABEL, colour=colour, tabular=True, room=area.right - start)
         for part, colour, column in _coloured(text, lit):
             place_of = (area.left + _NUMBER + column * letter, y)
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)
