@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Shown = tuple[Source, int | None, Mapping[int, str]]  # a function, its lit line, and what stands beside lines
 _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
-_SPARE: Final = 8.0  # figures of one width are a little wider
+_SPARE: Final = 4.0  # letters have whole pixels
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
 _BETWEEN: Final = 12.0  # points between code and notes
 _CODE: Final[Colour] = (190, 198, 214)
@@ -42,7 +42,7 @@ def draw_listing(
     """
     area, notes = pygame.FRect(box), notes or {}
     letter = typeface.digit_width(canvas.grown(LABEL), "code")
-    widths = {number: canvas.text_width(note, size=LABEL) + _SPARE for number, note in notes.items()}
+    widths = {number: canvas.text_width(note, size=LABEL, tabular=True) + _SPARE for number, note in notes.items()}
     below = {number for number, width in widths.items() if width > area.width / 2}  # in a row of its own
     widest = max((width for number, width in widths.items() if number not in below), default=0.0)
     beside = max(area.width / 3, widest) if notes else -_BETWEEN
