@@ -65,10 +65,10 @@ def draw_listing(
         if begins:
             canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
                         colour=NET if lit else FAINT, align="right")  # fmt: skip
-        if number in notes and begins != (number in below) and (begins or not text):
-            start = area.right - beside if begins else area.left + _NUMBER
-            colour = NET if lit else MUTE
-            canvas.text(notes[number], (start, y), size=LABEL, colour=colour, tabular=True)
+        in_line, in_own_row = begins and number not in below, not begins and not text
+        if number in notes and (in_line or in_own_row):
+            start = area.right - beside if in_line else area.left + _NUMBER
+            canvas.text(notes[number], (start, y), size=LABEL, colour=NET if lit else MUTE, tabular=True)
         for part, colour, column in _coloured(text, lit):
             place_of = (area.left + _NUMBER + column * letter, y)
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)
