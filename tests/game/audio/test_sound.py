@@ -165,22 +165,6 @@ def test_the_last_device_that_goes_leaves_silence_until_one_comes(sound: Any, mo
     assert level(ENGINE) > 0.9
 
 
-def test_no_device_is_silence_with_a_reason_and_the_next_look_finds_one(monkeypatch):
-    monkeypatch.setenv("SDL_AUDIODRIVER", "nonesuch")
-    sound: Any = Sound(INSTRUMENTS)
-    assert not sound.open()
-    assert sound.problem
-    sound.play("bell")
-    steps(sound, 3, engine=1.0)
-    for event in (LOST, REMOVED, GAINED):
-        sound.handle_event(event)
-    assert not sound.ready
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-    sound.handle_event(GAINED)
-    assert sound.ready
-    sound.close()
-
-
 def test_a_mixer_that_fails_meanwhile_is_let_go(sound: Sound):
     steps(sound, 5, engine=1.0)
     pygame.mixer.quit()

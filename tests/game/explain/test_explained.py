@@ -20,7 +20,6 @@ from game.explain.code_listing import draw_listing
 from game.explain.q_values import QValues, value_words
 from game.explain.readouts import PILOT
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.charts import LANDER_CHARTS, TrainingCharts
 from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver
 
@@ -138,19 +137,6 @@ def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_paus
     assert shows(driver, written, explained[0])
     driver.key(pygame.K_RIGHT)
     assert shows(driver, written, explained[1])
-
-
-def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
-    canvas = Canvas(pygame.Surface((1280, 720)))
-    charts = TrainingCharts(more=True)
-    charts.place([pygame.FRect(40, 100 + 150 * row, 360, 112) for row in range(4)])
-    charts.draw(canvas)
-    explained = [area.what for area in canvas.explained]
-    assert {texts.EXPLAIN_CHARTS[name] for name in LANDER_CHARTS} <= set(explained)
-    assert explained.count(texts.EXPLAIN_AXES[0]) == len(charts.charts)
-    assert texts.EXPLAIN_CHART_NOW.format(value="–") in {area.now() for area in canvas.explained}
-    for area in canvas.explained:  # an explanation and the cursor of a chart do not meet
-        assert all(chart.x_at(area.box.center) is None for chart in charts.charts)
 
 
 # Listing of code: it shows the lines of the function that runs, and keeps the current one in sight.

@@ -18,6 +18,10 @@ def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_o
         updates += 1
     assert 45 <= updates <= 75
     assert 0.3 < steps / updates < 0.65
+    pace.slow_down()
+    pace.steps()
+    pace.hurry()
+    assert not pace.slow
     assert all(pace.steps() == 1 for _ in range(50))
 
 
@@ -33,16 +37,6 @@ def test_a_picture_never_runs_backward():
             assert moment >= last - 1e-9
             last = moment
     assert last == pytest.approx(steps - 0.01)
-
-
-def test_slow_motion_can_be_cut_short():
-    pace = TimeScale()
-    pace.slow_down()
-    for _ in range(5):
-        pace.steps()
-    pace.hurry()
-    assert not pace.slow
-    assert all(pace.steps() == 1 for _ in range(9))
 
 
 def test_the_players_own_pace_holds_for_as_long_as_it_is_wished():

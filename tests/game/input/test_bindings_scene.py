@@ -137,14 +137,3 @@ def test_all_that_a_new_key_drops_is_said(table: Driver):
     assert said(table) == f"{left}: ↑, and no longer ← or A.  {main}: Space and W, and no longer ↑."
     table.keys(pygame.K_DELETE)
     assert said(table) == f"{left}: ← and A, and no longer ↑."
-
-
-def test_the_other_half_of_the_table_has_what_does_not_fly(table: Driver):
-    def named(driver: Driver) -> set[str]:
-        return {widget.label for widget in driver.form.widgets}
-
-    flying = named(table)
-    table.form.focus(table.form.widgets[0])
-    table.key(pygame.K_RIGHT)
-    assert named(table) & flying == {"", texts.BINDINGS_ALL}
-    assert named(table) | flying == {"", texts.BINDINGS_ALL, *texts.BINDINGS.values()}
