@@ -83,9 +83,9 @@ class AloneFrame(Frame):
         column.text(self._result_words, size=SMALL, colour=MUTE)
 
     def _result_words(self) -> str:
-        words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
-        pulls = Pulls.of(self._step, self._lesson.derivative, self._moved)
-        return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale))
+        arrived = f"{texts.LESSON_ALONE_ARRIVED} " if self.alone.arrived else ""
+        own = pulled(Pulls.of(self._step, self._lesson.derivative, self._moved).own / self._scale)
+        return f"{arrived}{texts.LESSON_ALONE_MORE.format(count=self._step.examples, own=own)}"
 
     def _figures(self) -> list[Part]:
         """Return the value, and its target."""

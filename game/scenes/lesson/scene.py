@@ -140,7 +140,6 @@ class LessonScene(PanelScene):
         panel.text(lambda: f"{texts.LESSON_TITLE}: {self._whose()}", colour=MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
-        panel.explain("")  # each card says what it is
         panel.gap(8)
         panel.text(self.frame.sentence)
         panel.gap(8)
