@@ -32,7 +32,7 @@ from game.drawing.tokens import (
     TEXT,
     VIEW_SIZE,
     Colour,
-)  # fmt: skip
+)
 from game.flight import outcomes
 
 Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
@@ -351,8 +351,9 @@ def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None
     if landed + lost == 0:
         return
     (left, top), share = corner, f"{100 * landed / (landed + lost):.0f}"
-    figure = canvas.text(share, (left - 1, top), size=FIGURE, weight="light", tabular=True,
-                         colour=rate_colour(canvas, float(share)))  # fmt: skip
+    figure = canvas.text(
+        share, (left - 1, top), size=FIGURE, weight="light", tabular=True, colour=rate_colour(canvas, float(share))
+    )
     canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
     counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
     canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)

@@ -286,11 +286,12 @@ class ChoiceChapter(MomentChapter):
     def why(self) -> str:
         sentences = " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
-                action=texts.said(ACTION_NAMES[action]), value=points(float(self.values[action]), 1),
+                action=texts.said(ACTION_NAMES[action]),
+                value=points(float(self.values[action]), 1),
                 came=points(came.came, 1),
             )
             for action, came in self.results.items()
-        )  # fmt: skip
+        )
         best = self.results.get(self.best)
         surprises = best is not None and best.came < max(came.came for came in self.results.values())
         return f"{sentences} {texts.LEARN_CHOICE_SURPRISE}" if surprises else sentences

@@ -191,9 +191,10 @@ class NeuronChapter(Chapter):
         ):
             y = box.top + box.height * (number + 0.6) / len(SENSES)
             words = texts.LEARN_NEURON_PRODUCT.format(
-                value=decimal(float(self.sensed[0, number]), 2, "+"), weight=decimal(self.weights[number], 0, "+"),
+                value=decimal(float(self.sensed[0, number]), 2, "+"),
+                weight=decimal(self.weights[number], 0, "+"),
                 product=decimal(product, 2, "+"),
-            )  # fmt: skip
+            )
             end = box.left + 0.6 * box.width
             canvas.text(name, (box.left + 4, y), size=SMALL, colour=MUTE, room=0.22 * box.width)
             canvas.text(words, (end, y), size=SMALL, align="right", tabular=True)

@@ -145,8 +145,10 @@ class OwnChapter(Chapter):
     def below(self, column: Column) -> None:
         for name in STEPS:
             column.add(partial(self._write_step, name))
-        column.text(lambda: texts.LEARN_OWN_DONE.format(done=sum(step.done for step in self.steps.values()),
-                                                        count=len(STEPS)), colour=MUTE)  # fmt: skip
+        column.text(
+            lambda: texts.LEARN_OWN_DONE.format(done=sum(step.done for step in self.steps.values()), count=len(STEPS)),
+            colour=MUTE,
+        )
 
     def _write_step(self, name: str, cursor: Cursor) -> None:
         """Write a step behind a ring, or a full one once it is done."""

@@ -148,9 +148,11 @@ class PayChapter(Chapter):
             return self.own.name
         pay = PAYS[self.pay]
         return texts.LEARN_PAY_POINTS.format(
-            second=points(pay.time / DT, 0), engine=points(pay.engine / DT, 1), landing=points(pay.terminal, 0),
+            second=points(pay.time / DT, 0),
+            engine=points(pay.engine / DT, 1),
+            landing=points(pay.terminal, 0),
             crash=points(-pay.terminal, 0),
-        )  # fmt: skip
+        )
 
     def choose(self, index: int) -> None:
         """Choose a pay, an index into `PAYS`."""

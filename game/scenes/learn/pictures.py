@@ -101,8 +101,9 @@ def draw_curve(canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colo
     """Draw a curve of heights, 0 to 1, over `length` decisions; NaN leaves a gap."""
     places = [
         (box.left + box.width * at / length, box.bottom - box.height * float(heights[at]))
-        for at in range(0, len(heights), max(1, length // _MOST)) if np.isfinite(heights[at])
-    ]  # fmt: skip
+        for at in range(0, len(heights), max(1, length // _MOST))
+        if np.isfinite(heights[at])
+    ]
     for a, b in pairwise(places):
         canvas.line(a, b, colour, 2)
 

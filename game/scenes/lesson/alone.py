@@ -99,8 +99,10 @@ class AloneFrame(Frame):
         alone = self.alone
         low, high = min(*alone.way, alone.target), max(*alone.way, alone.target)
         span, per_unit = max(_SPAN, len(alone.way) - 1), chart.height / max(high - low, 1e-9)
-        way = [(chart.left + chart.width * at / span, chart.bottom - per_unit * (value - low))
-               for at, value in enumerate(alone.way)]  # fmt: skip
+        way = [
+            (chart.left + chart.width * at / span, chart.bottom - per_unit * (value - low))
+            for at, value in enumerate(alone.way)
+        ]
         y = chart.bottom - per_unit * (alone.target - low)
         canvas.line((chart.left, y), (chart.right, y), HUMAN, 1.5, 0.8)
         beyond = -8 if way[0][1] > y else 8 + CAPTION  # on the side from which the way does not come
