@@ -121,24 +121,6 @@ def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
     assert seen > 30
 
 
-def test_what_a_turning_foot_felt_is_marked_although_the_craft_itself_was_slow_enough():
-    pad = Flight(1).env.ground.pads[0]
-    flight, readouts = dropped((pad.x, pad.top + 1.56, 0.06, -1.46, 0.01, 1.31))
-    assert cause_of(flight.env) is Cause.HARD
-    assert readouts["descent"].within is False
-    assert float(readouts["descent"].figure) > flight.env.limits.touch_speed
-
-
-def test_the_side_of_a_pad_is_not_said_to_be_slid_across():
-    pad = Flight(1).env.ground.pads[0]
-    flight, readouts = dropped((pad.x + pad.width / 2 + 1.0, pad.top + 5.0, 0.0, -4.0, 0.0, 0.0))
-    assert struck_side(flight.env)
-    reason = outcome_card(flight.env, 1.0).reason
-    words = texts.CRASHED_SIDEWAYS.split("{")[0]
-    assert reason.startswith(words)
-    assert readouts["descent"].within is False
-
-
 def test_a_landing_and_a_soft_touch_mark_nothing():
     pad = Flight(1).env.ground.pads[0]
     for x in (pad.x, pad.x + pad.width):

@@ -190,13 +190,6 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
 # A digit is drawn, and read, by the keyboard alone and by a gamepad alone.
 
 
-@pytest.fixture(params=DEVICES)
-def player(request: pytest.FixtureRequest, open_game) -> Player:
-    player = Player(open_game(DigitsScene), request.param)
-    player.frames(3)
-    return player
-
-
 def take_the_pen(player: Player) -> None:
     for direction in ["left"] * 2 + ["down"] * 14 + ["left"] * 2:
         if isinstance(player.form.focused, PictureRow):
@@ -212,7 +205,10 @@ def go(player: Player, direction: str, frames: int) -> None:
     player.hold(direction, down=False)
 
 
-def test_a_one_is_drawn_and_read(player: Player):
+@pytest.mark.parametrize("device", DEVICES)
+def test_a_one_is_drawn_and_read_without_a_mouse(drawing: Driver, device: str):
+    player = Player(drawing, device)
+    player.frames(3)
     take_the_pen(player)
     go(player, "up", 32)
     assert player.top.pad.empty
@@ -231,27 +227,19 @@ def test_a_one_is_drawn_and_read(player: Player):
     assert not player.app.scenes.running
 
 
-def test_the_pen_stays_on_the_pad(open_game):
-    player = Player(open_game(DigitsScene), "keys")
+def test_the_pen_stays_on_the_pad_and_is_lifted_as_the_focus_goes_on(drawing: Driver):
+    player = Player(drawing, "keys")
     player.frames(3)
     take_the_pen(player)
     player.hold("confirm", down=True)
-    player.app.window.minimised = True  # nobody looks
+    player.unseen = True
     go(player, "left", 90)
     go(player, "up", 90)
-    player.hold("confirm", down=False)
-    [stroke] = player.top.pad.strokes
-    assert stroke.min() < 3
-    width, height = player.top.pad.rect.size
-    assert ((stroke >= 0) & (stroke <= (width, height))).all()
-
-
-def test_a_lost_focus_lifts_the_pen(open_game):
-    player = Player(open_game(DigitsScene), "pad")
-    player.frames(3)
-    take_the_pen(player)
-    player.hold("confirm", down=True)
     player.key(pygame.K_TAB)
     player.frames(2)
     assert not player.form.typing
     assert not player.top.pad.drawing
+    [stroke] = player.top.pad.strokes
+    assert stroke.min() < 3
+    width, height = player.top.pad.rect.size
+    assert ((stroke >= 0) & (stroke <= (width, height))).all()

@@ -156,15 +156,11 @@ def draw(contest, samples, digit):
     contest.submit(images[clear.argmax()])
 
 
-def test_drawing_and_reading_take_turns(contest):
+def test_drawing_and_reading_take_turns_and_each_side_gets_a_point_for_what_it_reads(contest, samples):
     assert [each.kind for each in contest.rounds] == ["draw", "read"] * (ROUNDS // 2)
     asked = [each.digit for each in contest.rounds if each.kind == "draw"]
     assert len(set(asked)) == len(asked)
-
-
-def test_each_side_gets_a_point_for_what_it_reads(contest, samples):
-    while contest.round:
-        current = contest.round
+    while current := contest.round:
         if current.kind == "draw":
             draw(contest, samples, current.digit)
         else:

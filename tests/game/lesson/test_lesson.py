@@ -16,11 +16,10 @@ from game.core import texts
 from game.explain.figures import number, percent, points
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.flight import in_units, sensed
-from game.scenes.lesson.frame import case_of, pulled
+from game.scenes.lesson.frame import case_of
 from game.scenes.lesson.frames import parts_of
 from game.scenes.lesson.network import GradientFrame, NetworkFrame
 from game.scenes.lesson.scene import LessonScene
-from game.scenes.lesson.step import Pulls
 from game.scenes.lesson.update import AfterFrame, ErrorFrame
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of, shown
@@ -157,21 +156,6 @@ def test_it_opens_on_this_memory_alone_which_walks_to_its_target_press_by_press(
     assert np.abs(np.delete(moved, action)).max() > 0, "the others move with it: they share the weights"
     driver.press_on(texts.LESSON_ALONE_AGAIN)
     assert len(frame.alone.way) == 1
-
-
-def test_why_it_moves_far_alone_and_little_in_the_run_is_said_on_both_frames(driver: Driver, lesson: Lesson):
-    frame, count = driver.top.frame, len(lesson.batch_errors)
-    step, action = frame._step, int(lesson.cell.action)
-    moved = float(lesson.predicted_after[action] - lesson.predicted[action])
-    own = pulled(Pulls.of(step, lesson.derivative, moved).own / lesson.config.reward_scale)
-    assert texts.LESSON_ALONE_MORE.format(count=count, own=own) in " ".join(shown(driver, ALONE))
-    frame.once()
-    alone, run = abs(frame.alone.way[1] - frame.alone.way[0]), abs(float(own.replace("−", "-"))) * step.scale
-    assert alone > 10 * run, "the steps are large there"
-    words = " ".join(shown(driver, AFTER))
-    assert texts.LESSON_PULL_PARTS[0][0].format(count=count) in words
-    assert own in words
-    assert own != "+0.00"
 
 
 def test_another_language_changes_all_words_at_once(modern: Driver):

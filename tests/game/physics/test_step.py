@@ -127,24 +127,6 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
                     assert "{" not in sentences
 
 
-def _size(record: StepRecord, contact: int) -> float:
-    assert record.contacts is not None
-    return float(record.contacts.impulse[contact, 0])
-
-
-def test_a_rebound_begins_with_nothing_and_ends_with_an_impulse():
-    _, record = moment("bounce")
-    pair = max(record.pairs, key=lambda pair: -1 if pair.contact is None else _size(record, pair.contact))
-    pieces = {piece.kind: piece for piece in reversed(record.pieces(pair))}
-    first = pieces["impulses"].impulse
-    assert first is not None
-    assert first.before[0] == 0
-    assert first.after[0] > 1
-    code = dict(source_of(pieces["impulses"].function).lines)
-    assert "velocity[self.index]" in code[pieces["impulses"].line or 0]
-    assert "colour.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]
-
-
 def test_a_hand_that_pulls_is_part_of_the_step():
     exhibit = EXHIBITS["spin"](EARTH)
     body = exhibit.bodies[0]
