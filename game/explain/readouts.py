@@ -357,8 +357,4 @@ def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None
     canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
     counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
     canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)
-    canvas.explain(
-        (left - 4, top - 30, 180, 58),
-        texts.EXPLAIN_LANDINGS,
-        lambda: texts.EXPLAIN_LANDINGS_NOW.format(landed=landed, all=landed + lost),
-    )
+    canvas.explain((left - 4, top - 30, 180, 58), texts.EXPLAIN_LANDINGS)

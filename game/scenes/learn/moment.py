@@ -41,7 +41,7 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
-_METRES, _BELOW = 52.0, 1.2  # metres: across the picture, and below the ground
+_METRES, _BELOW, _ABOVE = 52.0, 1.2, 2.0  # metres: across the picture at least, below the ground, above the lander
 _ANSWERS: Final = (140.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
@@ -212,8 +212,9 @@ class MomentChapter(Chapter):
                 Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE)]  # fmt: skip
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        high = _METRES * box.height / box.width
-        view = view_in(box, (0.0, PARAMS.ground - _BELOW + high / 2), _METRES, canvas.scale)
+        foot = PARAMS.ground - _BELOW
+        high = max(_METRES * box.height / box.width, max(y for _, y in self._path) + _ABOVE - foot)
+        view = view_in(box, (0.0, foot + high / 2), high * box.width / box.height, canvas.scale)
         with inside(canvas, box):
             draw_ground(canvas, box, view)
             for a, b in pairwise(view.points(self._path).tolist()):

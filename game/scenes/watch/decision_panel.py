@@ -42,7 +42,6 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
     canvas.text(texts.DECISION_SCRIPTED_TITLE if values is None else texts.DECISION_TITLE, (left, top + 34), room=width)
     if values is None:
         draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
-        canvas.explain((left, top + _VALUES - 14, width, HEIGHT - 20), texts.EXPLAIN_RULES)
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
     if policy_map and policy_map.kind == ACTION:
@@ -51,7 +50,9 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
         _draw_scale(canvas, policy_map.scale)
     for number, line in enumerate(decision_words(decision)):
         canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
-    canvas.explain((left, top + _WORDS - 14, width, 38), texts.EXPLAIN_WHY, partial(_keeps, decision))
+    if decision.points is not None:
+        words = texts.EXPLAIN_WHY_NOW if decision.margin else texts.EXPLAIN_WHY_BEST
+        canvas.explain((left, top + _WORDS - 14, width, 38), words.format(margin=decision.margin))
     canvas.line((left, top + _WORDS + 32), (left + width, top + _WORDS + 32), LINE)
     canvas.text(texts.DECISION_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
     _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
@@ -104,12 +105,3 @@ def _sensed(inputs: list[float], number: int) -> str:
     elif number == 6:
         value = math.degrees(value)
     return texts.EXPLAIN_INPUTS_NOW[number].format(value=value).replace("-", "−")
-
-
-def _keeps(decision: Decision) -> str:
-    """Say when this pilot keeps an action."""
-    if decision.points is None:
-        return texts.EXPLAIN_WHY_RULES
-    if not decision.margin:
-        return texts.EXPLAIN_WHY_BEST
-    return texts.EXPLAIN_WHY_NOW.format(margin=decision.margin)
