@@ -175,10 +175,13 @@ class MomentChapter(Chapter):
     def why(self) -> str:
         last = self.judged[-1]
         sentence = texts.LEARN_MOMENT_WHY.format(
-            guess=points(last.guess, 1), value=points(last.value, 1), came=points(last.came, 1),
-            plain=points(last.plain, 1), decisions=last.decisions,
+            guess=points(last.guess, 1),
+            value=points(last.value, 1),
+            came=points(last.came, 1),
+            plain=points(last.plain, 1),
+            decisions=last.decisions,
             last=f"{self.agent.config.discount ** (last.decisions - 1):.2f}",
-        )  # fmt: skip
+        )
         if len(self.judged) == 1:
             return sentence
         said = [(each.guess, each.value) for each in self.judged]
@@ -207,9 +210,12 @@ class MomentChapter(Chapter):
         if not self.flying:
             return [guess]
         came = texts.LEARN_MOMENT_CAME if self.over else texts.LEARN_MOMENT_SO_FAR
-        return [guess, Part(points(self.value, 1), texts.LEARN_MOMENT_VALUE, colour=NET),
-                Part(points(self.came, 1), came),
-                Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE)]  # fmt: skip
+        return [
+            guess,
+            Part(points(self.value, 1), texts.LEARN_MOMENT_VALUE, colour=NET),
+            Part(points(self.came, 1), came),
+            Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE),
+        ]
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         foot = PARAMS.ground - _BELOW
