@@ -55,7 +55,7 @@ def test_everything_in_watch_is_explained(watching: Driver):
     ]
     assert len(inputs) == 9
     for what in (
-        texts.EXPLAIN_WATCH, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE, texts.EXPLAIN_WHY,
+        texts.EXPLAIN_WATCH, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE,
         *(texts.EXPLAIN_READOUTS[name] for name in PILOT),
         *texts.EXPLAIN_CHOICES, texts.EXPLAIN_MAP[0],
     ):  # fmt: skip

@@ -163,7 +163,7 @@ def test_a_damaged_line_is_counted_the_rest_is_read_and_what_has_ended_is_never_
         file.write('{"day": "2026-99-99"}\nhello\n{"day": "2026-01-02", "outcome": "LANDED"}\n')
     again = Days(context.user_dir)
     assert [each.outcome for each in again.attempts.values()] == ["CRASHED", "LANDED"]
-    assert again.problem == texts.DAYS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
+    assert again.problem == texts.FLIGHTS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
     driver = open_game(day_scene)
     driver.frames(2)
     assert driver.said == again.problem
