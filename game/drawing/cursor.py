@@ -7,7 +7,7 @@ on, so the same lines of code measure a panel, lay it out and draw it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import pygame
@@ -61,7 +61,13 @@ class Cursor:
 
     def in_style(self, size: float | None = None, colour: Colour | None = None, weight: Weight | None = None) -> Cursor:
         """Return a cursor at the same place that writes in another style."""
-        return replace(self, size=size or self.size, colour=colour or self.colour, weight=weight or self.weight)
+        styled = self.column(self.left, self.width)
+        styled.size, styled.colour, styled.weight = size or self.size, colour or self.colour, weight or self.weight
+        return styled
+
+    def column(self, left: float, width: float) -> Cursor:
+        """Return a cursor at the same height in another column."""
+        return Cursor(left, self.y, width, self.scale, self.canvas, self.seen, self.size, self.colour, self.weight)
 
     def measured(self, words: str, size: float | None = None, *, tabular: bool = False) -> float:
         """Return the width of words on one line."""
@@ -118,9 +124,9 @@ class Cursor:
     def pair(self, words: str, figure: str, colour: Colour | None = None) -> None:
         """Write words on the left, and a figure at the right end; below them, if there is no room beside them."""
         wide = self.measured(figure, tabular=True)
-        label = replace(self, width=self.width - wide - _APART)
+        label = self.column(self.left, self.width - wide - _APART)
         if label.width < self.width / 3:
-            label = replace(self)
+            label = self.column(self.left, self.width)
             label.text(words)
             self.y = label.y
         if self.canvas:
@@ -167,7 +173,7 @@ class Cursor:
             return
         left, below = self.left, self.y
         for part, width in zip(parts, widths, strict=True):
-            column = replace(self, left=left, width=width)
+            column = self.column(left, width)
             part(column)
             left, below = left + width + apart, max(below, column.y)
         self.y = below

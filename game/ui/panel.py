@@ -245,7 +245,7 @@ def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
         width = min(button.measured(cursor), cursor.width)
         if left > cursor.left and left + width > cursor.right:
             left, cursor.y = cursor.left, below
-        place = replace(cursor, left=left, width=width)
+        place = cursor.column(left, width)
         button.lay(place)
         left, below = left + width + _WORDS, max(below, place.y)
     cursor.y = below

@@ -131,18 +131,6 @@ def test_it_is_measured_beside_the_others_and_kept(
     assert texts.PILOTS_STALE in " ".join(written)
 
 
-def test_flights_that_leave_the_area_are_said_to_have_been_lost_outside(context: Context, monkeypatch):
-    monkeypatch.setattr(own, "STARTS", 4)
-    monkeypatch.setattr(own, "RIVALS", ())
-    path = shelf.Shelf(context.user_dir).new()
-    path.write_text("def act_many(o): return [3] * len(o)")
-    messages = [each for turn in own.measure(context.user_dir, context.models_dir, path) for each in turn]
-    *shares, measured = messages
-    assert shares[-1] == 1.0
-    assert measured.landed == 0
-    assert measured.lost[5] > measured.lost[6] == 0
-
-
 def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, context: Context):
     shelf.Shelf(context.user_dir).new().write_text("def act(o):\n    while True: pass")
     watching.key(pygame.K_o)

@@ -178,7 +178,7 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     driver.frames(2)
     driver.press_on(texts.TRAIN_GO_ON)
     scene = driver.top
-    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 500)
+    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 100)
     driver.frames(14)
     scene.rewind.go_to(decisions / 2)
     driver.frames(2)

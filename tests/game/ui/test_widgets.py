@@ -1,18 +1,14 @@
 from collections.abc import Callable
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 import pygame
 import pytest
 
-from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
-from game.input.controls import Command
-from game.scenes.menus.settings import SettingsScene
-from game.ui.actions import hints_of
 from game.ui.context import Context
 from game.ui.form import DOWN, LEFT, RIGHT, UP, Form, neighbour
 from game.ui.listing import shortened
@@ -59,10 +55,6 @@ def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Sub
     ]:
         with subtests.test(start=start, direction=direction, end=end):
             assert neighbour(COLUMNS, start, direction) == end
-
-
-def test_a_single_widget_keeps_the_focus():
-    assert neighbour(COLUMNS[:1], 0, DOWN) == 0
 
 
 def test_tab_visits_every_widget_and_comes_round(page: tuple[Driver, Page]):
@@ -215,11 +207,6 @@ def test_tabular_figures_keep_their_width(canvas: Canvas):
     assert len(widths) == 1
 
 
-def test_rectangles_that_touch_in_points_touch_in_pixels(canvas: Canvas):
-    edges = [canvas.rect(x, 0, 8, 8) for x in range(0, 1280, 8)]
-    assert all(a.right == b.left for a, b in pairwise(edges))
-
-
 def test_texts_are_kept_and_forgotten_with_the_size():
     canvas = Canvas(pygame.Surface((1280, 720)))
     canvas.text("kept", (0, 50))
@@ -252,18 +239,3 @@ def test_a_choice_of_too_many_shows_the_chosen_one_and_opens_a_list():
     for _ in range(40):
         choice.shift(1)
     assert choice.index == 29
-
-
-def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver]):
-    driver = open_game(SettingsScene, "sound")
-    driver.frames(2)
-    form = driver.top.form
-    seen = set()
-    for widget in form.widgets:
-        form.focus(widget)
-        by_arrows = isinstance(widget, SliderRow)
-        seen.add(by_arrows)
-        expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
-        (hint,) = hints_of([form.changes], driver.app.context.controls)
-        assert hint[:2] == (expected, texts.HINT_CHANGE)
-    assert seen == {True, False}
