@@ -49,7 +49,7 @@ class BackwardsChapter(Chapter):
 
     """
 
-    key, answer, door, shape = "backwards", 1, Route("digits"), 0.42
+    key, answer, door, shape, explains = "backwards", 1, Route("digits"), 0.42, True
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -147,11 +147,14 @@ class BackwardsChapter(Chapter):
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
         weights = " x ".join(map(str, (self.blames[2].size, DIGITS)))
         return [
-            Code(NeuralNetwork.backward_propagate, FullyConnectedLayer.backward_propagate,
-                 {FullyConnectedLayer.backward_propagate: shapes}),
+            Code(
+                NeuralNetwork.backward_propagate,
+                FullyConnectedLayer.backward_propagate,
+                {FullyConnectedLayer.backward_propagate: shapes},
+            ),
             Code(FullyConnectedLayer.input_error, np.dot, {np.dot: weights}),
             Code(FullyConnectedLayer.fill_gradients, np.dot),
-        ]  # fmt: skip
+        ]
 
     def below(self, column: Column) -> None:
         column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)

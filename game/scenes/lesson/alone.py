@@ -83,15 +83,18 @@ class AloneFrame(Frame):
         column.text(self._result_words, size=SMALL, colour=MUTE)
 
     def _result_words(self) -> str:
-        words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
-        pulls = Pulls.of(self._step, self._lesson.derivative, self._moved)
-        return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale))
+        arrived = f"{texts.LESSON_ALONE_ARRIVED} " if self.alone.arrived else ""
+        own = pulled(Pulls.of(self._step, self._lesson.derivative, self._moved).own / self._scale)
+        return f"{arrived}{texts.LESSON_ALONE_MORE.format(count=self._step.examples, own=own)}"
 
     def _figures(self) -> list[Part]:
         """Return the value, and its target."""
         count = texts.LESSON_ALONE_VALUE.format(count=len(self.alone.way) - 1)
-        return [Part(points(self.alone.way[-1] / self._scale), count, colour=NET), Part("→"),
-                Part(points(self.alone.target / self._scale), texts.LESSON_ALONE_TARGET, colour=HUMAN)]  # fmt: skip
+        return [
+            Part(points(self.alone.way[-1] / self._scale), count, colour=NET),
+            Part("→"),
+            Part(points(self.alone.target / self._scale), texts.LESSON_ALONE_TARGET, colour=HUMAN),
+        ]
 
     def _draw_way(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the way of the value to its target, step by step."""
@@ -99,8 +102,10 @@ class AloneFrame(Frame):
         alone = self.alone
         low, high = min(*alone.way, alone.target), max(*alone.way, alone.target)
         span, per_unit = max(_SPAN, len(alone.way) - 1), chart.height / max(high - low, 1e-9)
-        way = [(chart.left + chart.width * at / span, chart.bottom - per_unit * (value - low))
-               for at, value in enumerate(alone.way)]  # fmt: skip
+        way = [
+            (chart.left + chart.width * at / span, chart.bottom - per_unit * (value - low))
+            for at, value in enumerate(alone.way)
+        ]
         y = chart.bottom - per_unit * (alone.target - low)
         canvas.line((chart.left, y), (chart.right, y), HUMAN, 1.5, 0.8)
         beyond = -8 if way[0][1] > y else 8 + CAPTION  # on the side from which the way does not come
@@ -121,7 +126,10 @@ class AloneFrame(Frame):
         before, now = (each / self._scale for each in (self._first, self.alone.outputs))
         low, span = float(min(*before, *now)), max(float(np.ptp([*before, *now])), 1e-9)
         return [
-            Line((said_action(action), points(end), points(end - start)), lit=action == self._action,
-                 bars=[(end - low) / span])
+            Line(
+                (said_action(action), points(end), points(end - start)),
+                lit=action == self._action,
+                bars=[(end - low) / span],
+            )
             for action, (start, end) in enumerate(zip(before.tolist(), now.tolist(), strict=True))
-        ]  # fmt: skip
+        ]

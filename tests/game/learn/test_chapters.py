@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
@@ -14,13 +15,15 @@ from ai.nn import SGD, Adam
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import save
+from ai.training.small_run import Flown as Flight
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.core.source import source_of
-from game.explain.figures import percent, points
+from game.drawing.canvas import Canvas
+from game.explain.figures import decimal, percent, points
 from game.flight.logbook import Records
-from game.scenes.learn import downhill, plane
+from game.scenes.learn import downhill, moment, pictures, plane
 from game.scenes.learn import runs as runs_module
 from game.scenes.learn.backwards import BackwardsChapter
 from game.scenes.learn.chapter import Chapter
@@ -99,7 +102,10 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
             chapter.update()
         assert chapter.best[0] > 24
         assert chapter.tried
-        assert "−4.0" in chapter.why()
+        assert "−4 for tilt" in chapter.why()
+        values = (float(f"{value:.2f}") for value in chapter.sensed[0])
+        written = decimal(sum(value * weight for value, weight in zip(values, HINT, strict=True)), 2, "+")
+        assert f"The sum is {written}." in chapter._summed(), "what is written adds up"
         total = float((chapter.sensed[0] * chapter.layer.weights[:, 0]).sum() + chapter.layer.bias[0])
         assert chapter.output == pytest.approx(np.tanh(total), abs=1e-6)
         assert chapter.steer == (1 if chapter.output > 0.5 else 2 if chapter.output < -0.5 else 0)
@@ -262,6 +268,10 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
     assert haste["time"] < landing["time"]
     assert chapter.tried
     assert {str(landing["landed"]), str(haste["crashed"])} <= set(chapter.why().split())
+    assert chapter.verdict() is None, "the question was about another pay"
+    for answer, kind in enumerate(("landed", "late", "crashed")):
+        chapter.results[ASKED] = {**landing, **dict.fromkeys(("landed", "late", "gone", "crashed"), 1), kind: 9}
+        assert chapter.verdict() == answer
     chapter.close()
     assert not chapter.running
 
@@ -346,7 +356,7 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
             assert judged.came == pytest.approx(came, abs=0.05)
             assert judged.decisions == len(pays)
             assert chapter.tried
-            assert chapter.verdict() == (2 if number == 0 else None), "about 20 points; the other flights are shorter"
+            assert chapter.verdict() == 2, "about 20 points, by the first; the others are shorter"
         chapter.turn()
         assert points(judged.value, 1) in str([code.notes for code in chapter.code()]), "the moment that was judged"
     assert f"{len(MOMENTS)} moments" in chapter.why()
@@ -403,14 +413,17 @@ def test_two_agents_learn_and_a_guess_gets_its_verdict_from_this_very_run(
             run(chapter, other)
             assert chapter.verdict() is None, "the question was about another choice"
             run(chapter, asked)
+            came = chapter.verdict()
+            assert came is not None
+            assert came < len(texts.LEARN_ANSWERS[chapter.key])
             left, right = (state.landed or 0.0 for state in chapter.states[-1])
             assert {percent(left), percent(right)} <= set(_percents(chapter.why()))
             if kind is TargetChapter:
                 assert chapter.peaks[1] > 300.0, "it does on most processors"
                 assert chapter.verdict() == 2
             else:
-                came = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
-                assert chapter.verdict() == came
+                expected = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
+                assert chapter.verdict() == expected
             chapter.restart()
             assert (chapter.states, chapter.tried) == ([], False)
 
@@ -465,3 +478,31 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     assert done() == {"train", "choose", "hand"}, "opened, and not flown yet"
     records.keep(landed(), time.time() + 5, network="mine")
     assert done() == {"train", "choose", "hand", "race"}
+
+
+# Pictures
+
+
+def test_no_lander_is_cut_at_the_upper_edge(made: Made, monkeypatch: pytest.MonkeyPatch):
+    drawn: list[np.ndarray] = []
+    monkeypatch.setattr(pictures, "draw_crowd", lambda _, __, poses, ___: drawn.append(poses))
+    canvas, box = Canvas(pygame.Surface((1280, 720))), pygame.FRect(400, 100, 500, 120)
+    heights = np.arange(0.0, 30.0, 0.5)
+    flown = Flight(heights, np.zeros(60), np.zeros(60, bool), np.zeros(60, np.intp))
+    runs_module.draw_row(canvas, box, flown, 0, count=60)
+    poses = np.stack([np.zeros(60), heights, np.zeros(60)], axis=1)
+    view = pictures.view_in(box, (0.0, 5.0), 40.0, canvas.scale)
+    pictures.draw_landers(canvas, box, view, poses, np.zeros(60, bool), 0)
+    assert len(drawn[0]) > 20
+    assert 10 < len(drawn[1]) < 60
+    assert view.points([(0.0, drawn[1][:, 1].max() + pictures.HEAD)])[0, 1] >= box.top
+    for kind in (MomentChapter, ChoiceChapter):
+        chapter = made(kind)
+        for _ in MOMENTS:
+            with monkeypatch.context() as patch:
+                views: list[Any] = []
+                patch.setattr(moment, "draw_ground", lambda _, __, seen, views=views: views.append(seen))
+                chapter.draw(canvas, box, 1.0)
+            ((_, y),) = views[0].points([chapter.env.position[0]])
+            assert y - 1.3 * np.ptp(views[0].points([(0.0, 0.0), (0.0, 1.0)])[:, 1]) >= box.top
+            chapter.turn()

@@ -9,20 +9,12 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
-from tests.support.small import LANDERS
-
-
-def toggle(driver: Driver) -> None:
-    """Start, pause or resume."""
-    driver.form.focus(driver.top.start_button)
-    driver.key(pygame.K_RETURN)
+from tests.support.small import LANDERS, learn, pause, toggle
 
 
 def start(driver: Driver) -> None:
-    toggle(driver)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
-    toggle(driver)
-    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
+    learn(driver)
+    pause(driver)
     driver.frames(30)
 
 

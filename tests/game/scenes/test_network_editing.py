@@ -7,7 +7,6 @@ import pytest
 from ai.explain.inspection import links
 from ai.training.edits import NetworkEdits
 from game.core import texts
-from game.core.worker import WorkerState
 from game.scenes.train.editing import NetworkEditing
 from game.scenes.train.picking import Link, Unit
 from game.scenes.train.scene import TrainScene
@@ -16,14 +15,13 @@ from tests.support.driver import Driver
 from tests.support.networks import on_a_link
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
+from tests.support.small import learn, pause
 
 
 def paused(driver: Driver) -> Driver:
     """A run that has begun to learn, paused, with its network large."""
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
+    learn(driver)
+    pause(driver)
     driver.press_on(texts.TRAIN_LOOK[0])
     driver.top.run.ask("undo")  # of nothing: the answer is the network as it is now
     driver.frames(3)

@@ -16,6 +16,7 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
+from tests.support.small import learn, pause
 
 POINTS = 5
 
@@ -23,10 +24,8 @@ POINTS = 5
 @pytest.fixture
 def train(train: Driver) -> Driver:
     """A run that has learnt for a while, and is paused."""
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: len(train.top.run.history) >= POINTS)
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
+    learn(train, POINTS)
+    pause(train)
     train.top.open(CHARTS)
     train.frames(14)
     return train

@@ -30,11 +30,7 @@ from game.ui.entry import EntryRow
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
-
-
-def start(driver: Driver) -> None:
-    driver.press_on(texts.TRAIN_START)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
+from tests.support.small import learn
 
 
 def save_as(driver: Driver, name: str) -> None:
@@ -44,7 +40,7 @@ def save_as(driver: Driver, name: str) -> None:
 
 
 def test_start_pause_step_and_go_on(beside: Driver) -> None:
-    start(beside)
+    learn(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
     assert len(scene.swarm.swarm_state.outcome) == 4
@@ -68,7 +64,7 @@ def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
     train: Driver, open_game: Callable[..., Driver]
 ) -> None:
     train.top.knobs.set_config(PRESETS["classic"].changed(hidden=(8,)), 3)
-    start(train)
+    learn(train)
     assert train.top.run.name == "Classic 1"
     decisions = train.top.run.history["decisions"][-1]
     train.app.close()
@@ -87,20 +83,20 @@ def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
 def test_start_keeps_what_was_left_if_it_lands_and_puts_anything_else_where_it_can_be_brought_back(
     train: Driver, open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, share: float | None
 ) -> None:
-    start(train)
+    learn(train)
     train.app.close()
     claim = Library.claim
     monkeypatch.setattr(Library, "claim", lambda library: (left := claim(library)) and replace(left, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
     library = driver.top.library
-    start(driver)
+    learn(driver)
     assert len(library.runs()) == (share is not None)
     assert bool(library.last_deleted) == (share is None)
 
 
 def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     scene.knobs.turn("n_step", 3)
     train.frames(2)
@@ -112,7 +108,7 @@ def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver)
 
 
 def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     save_as(train, "mine")
     train.wait(scene.library.runs)
@@ -125,7 +121,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
 
 
 def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     (scene.library.folder / "mine").mkdir()
     train.press_on(texts.TRAIN_SAVE)
@@ -161,7 +157,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
 
 
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.key(pygame.K_LEFT)
@@ -198,7 +194,7 @@ def test_a_run_is_started_named_found_and_left_without_a_mouse(train: Driver) ->
 @pytest.mark.slow
 def test_a_dead_worker_is_reported_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
     beside.unseen = True
-    start(beside)
+    learn(beside)
     scene = beside.top
     beside.wait(lambda: scene.library.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
     for child in active_children():
