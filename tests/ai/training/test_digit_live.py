@@ -52,8 +52,15 @@ def test_a_run_reports_how_it_begins_how_it_stands_and_what_it_misreads(data):
         assert shown == min(confusion.table[row, column], EXAMPLES)
 
 
-def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
-    for _ in DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data):
+def test_the_network_is_that_of_a_run_without_a_window_and_one_that_is_closed_can_be_gone_on_with(data, tmp_path):
+    run = DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data)
+    for _ in range(8):
+        next(run)
+    run.close()
+    assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
+    again = DigitSession.live(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", keep=tmp_path / "run", data=data)
+    assert next(again)[0] == RunStarted(SMALL, 4, 7, "", 30)
+    for _ in again:
         pass
     training = DigitTraining(SMALL, 4, data)
     while not training.done:
@@ -62,16 +69,6 @@ def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
     assert (training.best_epoch is None) == improved, "a last network that is the best needs no word"
     kept = DigitClassifier.load(tmp_path / "run")
     np.testing.assert_array_equal(kept.network.values, training.best_classifier().network.values)
-
-
-def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
-    run = DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data)
-    for _ in range(8):
-        next(run)
-    run.close()
-    assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
-    again = DigitSession.live(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
-    assert next(again)[0] == RunStarted(SMALL, 4, 7, "", 30)
 
 
 def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(data, tmp_path):

@@ -101,9 +101,6 @@ def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_
     assert last.crashed == pytest.approx((ended == Outcome.CRASHED).mean(), abs=0.05)
 
 
-def test_the_careful_lander_acts_at_random_the_least():
-    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3, TINY.num_envs)
-    assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
 
 
 def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
@@ -338,40 +335,36 @@ def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
 
 
 def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
-    run = begin(clock=(clock := Clock()))
-    messages, history = messages_in(run, 30), History()
+    run, history = begin(clock=(clock := Clock())), History()
+    messages_in(run, 30)
 
-    def turn(name, value):
+    def turn(name, value, seconds=0.0, turns=0):
         for message in run.send(("change", name, value)):
             history.append(message)
+        clock.now += seconds
+        messages_in(run, turns)
+
+    def marks():
+        return [(each.name, each.before, each.after) for each in history.setting_changes]
 
     for value in (0.97, 0.96, 0.95, 0.9):  # a drag, with a decision at each step
-        turn("discount", value)
-        clock.now += 0.3
-        messages += messages_in(run, 1)
-    (mark,) = history.setting_changes
-    assert (mark.before, mark.after, mark.decisions) == (TINY.discount, 0.9, 32 * 32)
-    turn("learning_rate", 0.1)
-    clock.now += 5.0
-    messages_in(run, 1)
-    turn("discount", 0.85)
-    assert [(each.name, each.before, each.after) for each in history.setting_changes] == [
-        ("discount", TINY.discount, 0.9),
-        ("learning_rate", TINY.learning_rate, 0.1),
-        ("discount", 0.9, 0.85),
-    ]
-    clock.now += 5.0
+        turn("discount", value, 0.3, 1)
+    dragged, rate = ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1)
+    assert marks() == [dragged]
+    assert history.setting_changes[0].decisions == 32 * 32
+    turn("learning_rate", 0.1, 5.0, 1)
+    turn("discount", 0.85, 5.0)
+    assert marks() == [dragged, rate, ("discount", 0.9, 0.85)]
     turn("discount", 0.8)  # it rests: nothing was learnt with the value before
     turn("discount", 0.9)  # and back to where it was
-    assert [each.name for each in history.setting_changes] == ["discount", "learning_rate"]
+    assert marks() == [dragged, rate]
     turn("discount", 0.82)
-    assert [each.after for each in history.setting_changes] == [0.9, 0.1, 0.82], "the mark of before stays"
-    turn("discount", 0.9)
-    turn("discount", 0.9)
-    turn("discount", 0.9)  # nothing is turned
-    kept = run.gi_frame.f_locals["session"].history
-    assert kept.setting_changes == history.setting_changes
-    assert run.gi_frame.f_locals["session"].training.config.discount == 0.9
+    assert marks() == [dragged, rate, ("discount", 0.9, 0.82)], "the mark of before stays"
+    for _ in range(3):
+        turn("discount", 0.9)
+    session = run.gi_frame.f_locals["session"]
+    assert session.history.setting_changes == history.setting_changes
+    assert session.training.config.discount == 0.9
 
 
 class Clock:
