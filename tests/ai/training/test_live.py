@@ -5,14 +5,13 @@ from itertools import chain, islice, pairwise
 import numpy as np
 import pytest
 
-from ai.agent.schedule import exploration_of_each
 from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping
 from ai.training.config import Config, gym_config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
-from ai.training.lander_session import CAREFUL, LanderSession
+from ai.training.lander_session import LanderSession
 from ai.training.loop import Training
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from ai.training.run import resume
@@ -99,8 +98,6 @@ def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_
     assert last.success + last.crashed + last.out_of_bounds + last.timed_out == pytest.approx(1.0)
     ended = np.concatenate([sight.outcome[sight.outcome != 0] for sight in sights])[: int(last.episodes)][-100:]
     assert last.crashed == pytest.approx((ended == Outcome.CRASHED).mean(), abs=0.05)
-
-
 
 
 def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
