@@ -107,7 +107,7 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
 
 
 KNOWN = '"format": "tranquility demonstrations", "version": 1'
-NONSENSE = [
+NONSENSE: list[str | bytes] = [
     "{", "[" * 100_000, b"\xff\xfe", f'{{{KNOWN}, "flights": 3}}', f'{{{KNOWN}, "flights": [3]}}',
     *(f'{{{KNOWN}, "flights": [{{"seed": 1, "actions": [0], {wrong}}}]}}' for wrong in (
         '"ground": -1', '"ground": "x"', '"ground": 1.5', '"ground": [1]', '"ground": true', '"spawn": []',

@@ -36,6 +36,7 @@ def test_evaluating_changes_nothing_about_the_training():
 def test_progress_counts_what_happened():
     training = Training(SMALL, 0, **QUICK)
     training.clock = map(float, count(0, 0.5)).__next__
+    assert isinstance(training.env, LanderEnv)
     for _ in range(80):
         progress = training.advance()
         assert not training._held[training.env.steps == 0].any(), "a new flight holds no action yet"
