@@ -306,6 +306,8 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
         assert of(RunStarted, next(run))[0].lost == ""
         pieces += messages_in(run, turns)
     assert by_kind(pieces) == by_kind(whole)
+    checkpoints = [[each.decisions for each in of(Checkpoint, messages)] for messages in (pieces, whole)]
+    assert checkpoints[0] == checkpoints[1]
     assert len(of(Validation, whole)) == 2
     for each, folder in ((straight, "straight"), (run, "pieces")):
         each.send(("save", tmp_path / folder))
