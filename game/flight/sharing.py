@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
 
@@ -38,14 +38,13 @@ def code(record: Record) -> str:
 def record_of(flight: SharedFlight, when: float, real: Earned | None = None) -> Record:
     """Return the record of a shared flight: as it is claimed, or as it is `real`, once it has been flown again."""
     recording, claim = flight.recording, flight.claim
-    outcome, points, end = (real.outcome, real.points, real.end) if real else (claim.outcome, claim.points, claim.end)
+    said = real or claim
+    seconds, fuel, medal = (real.seconds, real.fuel, real.medal) if real else (len(recording.actions) * DT, 0.0, 0)
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
-    entry = Entry(
-        when, outcome.name, real.seconds if real else len(recording.actions) * DT, real.fuel if real else 0.0, 0.0,
-        round(by_hand, 4), pads=recording.pads, score=points, course=flight.course, barred=flight.barred,
-        medal=real.medal if real else 0, rules=flight_file.rules_of(recording.mission),
-    )  # fmt: skip
-    return Record(recording, entry, end)
+    entry = Entry(when, said.outcome.name, seconds, fuel, 0.0, round(by_hand, 4), pads=recording.pads, medal=medal)
+    rules = flight_file.rules_of(recording.mission)
+    entry = replace(entry, score=said.points, course=flight.course, barred=flight.barred, rules=rules)
+    return Record(recording, entry, said.end)
 
 
 def flights_in(text: str) -> Iterator[SharedFlight | str]:

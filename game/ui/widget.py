@@ -51,10 +51,6 @@ class PointsManager(UIManager):
             self.mouse_position = (int(event.pos[0]), int(event.pos[1]))
         return bool(super().process_events(event))
 
-    def calculate_scaled_mouse_position(self, position: tuple[float, float]) -> tuple[int, int]:
-        """Return the position unchanged, because it is in points already."""
-        return int(position[0]), int(position[1])
-
     def update(self, time_delta: float) -> None:
         """Advance the elements, for a text line repeats a held key.
 
@@ -92,12 +88,6 @@ class Widget(UIElement):
     @property
     def box(self) -> pygame.Rect:
         return pygame.Rect(self.rect)
-
-    @property
-    def mouse_x(self) -> float | None:
-        """The mouse's x in points; None while keys or a gamepad are in use."""
-        x = float(self.ui_manager.get_mouse_position()[0])
-        return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
 
     def press(self) -> Transition | None:
         return None

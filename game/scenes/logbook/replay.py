@@ -250,7 +250,7 @@ class ReplayScene(FormScene):
     def _lay_out(self) -> None:
         if self._size != typeface.grown(SMALL):
             self._describe()
-        scale = self.context.in_window((0, 0, 1000, 0)).width / 1000
+        scale = self.context.reading().whole.scale
         self._panel.lay_out(pygame.FRect(MARGIN, _VERBS, VIEW_SIZE[0] - 2 * MARGIN, 100.0), scale)
 
     def _take_over(self) -> Transition | None:

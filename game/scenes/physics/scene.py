@@ -20,7 +20,8 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL, Colour
 from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.physics.exhibit import BELOW, CLEAR
+from game.scenes.physics.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
+from game.scenes.physics.exhibit import BELOW, CLEAR, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results
 from game.ui.actions import Action, Table
@@ -30,9 +31,7 @@ from game.ui.panel_scene import PanelScene
 from game.ui.playback import Playback
 from game.ui.rows import ButtonRow
 from game.ui.virtual_pointer import PictureRow
-from game.world.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
 from game.world.camera import View
-from game.world.grip import Grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)

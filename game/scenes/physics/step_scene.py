@@ -17,15 +17,14 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.bodies import Outlines
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.step import Axis, Impulse, Pair, Piece, StepRecord, written
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.world.bodies import Outlines
 from game.world.camera import View
-from game.world.grip import Grip
 
 _PICTURE, _LISTING = 344.0, 400.0  # heights
 _LEAST: Final = 420.0  # width of a column

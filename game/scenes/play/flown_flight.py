@@ -19,7 +19,7 @@ from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.flight.credit import Credit, eased
 from game.flight.demonstrations import add_demonstration
-from game.flight.flight import Flight, StickHolder
+from game.flight.flight import Flight, StickHolder, start_of
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
 from game.flight.handicap import OWN
@@ -115,7 +115,7 @@ class FlownFlight:
     def _shadow(self) -> Flight:
         """Return the network's own flight from the same start, flown unseen: the card tells its score."""
         start = self.flight.recording
-        shadow = Flight(start.seed, self._policy, start.spawn, pads=start.pads, easing=start.easing)
+        shadow = Flight(start.seed, self._policy, **start_of(start))
         shadow.hand_over()
         return shadow
 

@@ -17,7 +17,7 @@ from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
 from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
 from game.explain.readouts import draw_centred_bars
-from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
+from game.scenes.watch.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
 _COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it

@@ -18,6 +18,7 @@ from game.drawing.tokens import INK
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
 from game.scenes.watch.decision_panel import PANEL
+from game.scenes.watch.policy_map import OFF, PolicyMap
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
@@ -25,7 +26,6 @@ from game.world.camera import Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
-from game.world.policy_map import OFF, PolicyMap
 from game.world.scenery import mark_lost
 from game.world.stage import Stage
 
@@ -195,7 +195,7 @@ class Watched:
         """Draw the world, the map and the swarm."""
         calm = self._context.settings.reduced_motion
         view, size = self.camera.view(canvas.scale, between).filling(canvas), SIZES[self.env.num_envs]
-        landscape(canvas.surface.get_size(), calm).draw(canvas, self.camera, self._time, between)
+        landscape(canvas.surface.get_size(), calm, "moon").draw(canvas, self.camera, self._time, between)
         self.policy_map.draw(canvas, view)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()

@@ -10,11 +10,10 @@ import pytest
 
 from engine import Body
 from game.core import texts
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results
 from game.scenes.physics.scene import GRAVITIES
-from game.world.grip import Grip
 
 MOON, EARTH = GRAVITIES
 # The body that is measured, where it is not the first

@@ -10,10 +10,10 @@ from ai.lander.environment import LanderEnv, Outcome
 from engine import Circle, Polygon, Sprite, World
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, HUMAN, INK
+from game.scenes.physics import bodies
+from game.scenes.physics.bodies import Outlines
 from game.scenes.physics.exhibits import EXHIBITS
-from game.world import bodies
 from game.world import lander as art
-from game.world.bodies import Outlines
 from game.world.camera import View
 from game.world.stage import Stage
 
