@@ -47,7 +47,7 @@ class GameWindow:
         except pygame.error as error:
             raise NoDisplayError(str(error)) from error
         self._window.minimum_size = MINIMUM_SIZE
-        self._window.set_icon(_draw_icon())
+        self._window.set_icon(draw_icon())
         self._full_screen = full_screen
         self._windowed: tuple[tuple[int, int], tuple[int, int] | int] = (VIEW_SIZE, pygame.WINDOWPOS_CENTERED)
         self.minimised = False
@@ -120,8 +120,8 @@ class GameWindow:
         pygame.display.quit()
 
 
-def _draw_icon() -> pygame.Surface:
-    """Return the icon, drawn by code: a lander over the moon's edge."""
+def draw_icon(size: int = _ICON_SHOWN) -> pygame.Surface:
+    """Return the icon, `size` pixels wide, drawn by code: a lander over the moon's edge."""
     sheet = pygame.Surface((_ICON, _ICON), pygame.SRCALPHA)
     whole = sheet.get_rect()
     mask = sheet.copy()
@@ -137,4 +137,4 @@ def _draw_icon() -> pygame.Surface:
     pygame.draw.line(sheet, INK, (140, 68), (140, 44), 5)
     pygame.draw.circle(sheet, HUMAN, (140, 40), 9)
     sheet.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MULT)
-    return pygame.transform.smoothscale(sheet, (_ICON_SHOWN, _ICON_SHOWN))
+    return pygame.transform.smoothscale(sheet, (size, size))

@@ -165,9 +165,8 @@ class ListRow(RowWidget):
         room = right - name
         before = math.inf
         for cell, column in zip(cells, self._columns, strict=False):
-            end = right - column
-            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True,
-                              room=before - column - _BETWEEN)  # fmt: skip
+            end, beside = right - column, before - column - _BETWEEN
+            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True, room=beside)
             before = column
             room = min(room, box.left - name - 24)
         colour = INK if chosen else mix(MUTE, INK, 0.35)

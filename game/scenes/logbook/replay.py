@@ -44,7 +44,7 @@ from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.playback import Playback
 from game.ui.rows import ButtonRow
-from game.ui.widget import Widget
+from game.ui.widget import OnPress, Widget
 from game.world.camera import ClearArea, View
 from game.world.paths import draw_faint, draw_futures
 from game.world.scenery import Scenery
@@ -155,14 +155,12 @@ class ReplayScene(FormScene):
     # Time
 
     def go_to(self, step: int) -> None:
-        """Show another moment."""
         self.flight_replay.go_to(step)
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
 
     def _show_futures(self) -> None:
-        """Show the six futures of the moment at which the replay stops, or no longer."""
         self._futures = None
         self._asks = not self._asks
         if self._asks:
@@ -236,13 +234,14 @@ class ReplayScene(FormScene):
         self._panel = Panel(part)
         speeds, verbs = self._panel.beside((2, 3), least=0.0)
         self.playback.describe(speeds, size).compact(_LABELS, ButtonRow.pad)
-        *_, self._export_word, _ = verbs.words([
+        words: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over),
             (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
             (texts.CODE_COPY, self._copy),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
-        ], size)  # fmt: skip
+        ]
+        *_, self._export_word, _ = verbs.words(words, size)
         self.form.replace(self._rows, part.widgets)
         self._rows = part.widgets
         self._lay_out()
@@ -254,7 +253,6 @@ class ReplayScene(FormScene):
         self._panel.lay_out(pygame.FRect(MARGIN, _VERBS, VIEW_SIZE[0] - 2 * MARGIN, 100.0), scale)
 
     def _take_over(self) -> Transition | None:
-        """Fly on from the moment that is shown."""
         if self.flight_replay.flight.over:
             self.context.note(texts.REPLAY_OVER)
             return None
@@ -274,7 +272,6 @@ class ReplayScene(FormScene):
         give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
-        """Start the export, or cancel the running one."""
         if self.export:
             self._stop_export()
             return
@@ -288,7 +285,6 @@ class ReplayScene(FormScene):
         self._end_export(texts.EXPORT_STOPPED)
 
     def _follow_export(self, export: Export) -> None:
-        """Show the progress of the export, or its result."""
         export.poll()
         self._export_word.label = texts.EXPORT_GOES_ON.format(percent=round(100 * export.share))
         if export.over:
@@ -313,7 +309,6 @@ class ReplayScene(FormScene):
         self.explained.draw(canvas)
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the moment that is shown, the way there and on, and its figures."""
         between = self.playback.between(alpha)
         view = self._scenery.view(canvas.scale, between).filling(canvas)
         self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
@@ -324,7 +319,6 @@ class ReplayScene(FormScene):
         readouts.draw_flight(canvas, self._readouts)
 
     def _draw_title(self, canvas: Canvas) -> None:
-        """Draw which flight it is; of a friend's, the claim, and what comes of checking it."""
         if self.claimed:
             self.claimed.draw(canvas)
             return

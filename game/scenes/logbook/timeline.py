@@ -56,12 +56,10 @@ class Timeline(Widget):
         return None
 
     def shift(self, direction: int) -> bool:
-        """Go a tenth of a second back or on."""
         self._on_go_to(self.at + _STEP * direction)
         return True
 
     def drag(self, x: float) -> None:
-        """Go to the step under the mouse."""
         left, width = self.track
         self._on_go_to(round(self.length * (x - left) / width))
 
@@ -76,7 +74,6 @@ class Timeline(Widget):
         return left + width * min(max(step / self.length, 0.0), 1.0)
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the strip, the lanes below it and the mark of the moment."""
         super().paint(canvas)
         (left, width), top = self.track, self.box.top + _TOP
         self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)

@@ -100,11 +100,9 @@ class MenuBackground:
 
     @property
     def over(self) -> bool:
-        """Whether the flight has ended."""
         return bool(self.env.outcome[0] != Outcome.FLYING)
 
     def _begin(self) -> None:
-        """Place the lander on the pad, ready to ascend."""
         self._stand(self.env.pad[0, 0])
         self._climbs, self._rested = True, 0
         self.poses, self.stage = Poses(self.env), Stage(self.env, np.random.default_rng(0))

@@ -29,8 +29,8 @@ from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.playback import Playback
-from game.ui.rows import ButtonRow
 from game.ui.virtual_pointer import PictureRow
+from game.ui.widget import OnPress
 from game.world.camera import View
 
 GRAVITIES: Final = (1.62, 9.81)
@@ -78,7 +78,6 @@ class PhysicsScene(PanelScene):
     # The exhibit
 
     def restart(self) -> None:
-        """Begin the exhibit anew."""
         self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity], self.values.get(self.chosen))
         self._waits = self.measuring = self.grip = None
         self._outlines = Outlines(self.exhibit.sprites)
@@ -88,7 +87,6 @@ class PhysicsScene(PanelScene):
             self.plot = LawPlot(self.exhibit, self._axis, self.results)
 
     def _show(self) -> None:
-        """Begin an exhibit, with rows of its own."""
         self.restart()
         self.build()
 
@@ -119,23 +117,19 @@ class PhysicsScene(PanelScene):
         self._waits = _REST if len(self.exhibit.bodies) > _MANY else 0
 
     def _reset(self) -> None:
-        """Put the quantities back to what they were at first."""
         self.values.pop(self.chosen, None)
         self._show()
 
     def toggle_plot(self) -> None:
-        """Show or hide law and measurement."""
         self.measuring = None
         self.plot = None if self.plot else LawPlot(self.exhibit, self._axis, self.results)
         self.build()
 
     def measure(self) -> None:
-        """Begin to measure the whole range, or stop that."""
         self.measuring = None if self.measuring else RangeMeasurement(self.exhibit, self._axis, self.results)
         self.build()
 
     def toggle_contacts(self) -> None:
-        """Draw contacts, or hide them."""
         self.contacts_drawn = not self.contacts_drawn
         self.build()
 
@@ -213,20 +207,18 @@ class PhysicsScene(PanelScene):
         what = texts.EXPLAIN_PHYSICS
         for quantity in self.exhibit.quantities:
             label, figure = texts.QUANTITIES[quantity.name]
-            column.slider(
-                label, self.exhibit.values[quantity.name], quantity.limits, partial(self._change, quantity.name),
-                step=quantity.step, figure=partial(_filled, figure),
-            )  # fmt: skip
+            value, change = self.exhibit.values[quantity.name], partial(self._change, quantity.name)
+            shown = partial(_filled, figure)
+            column.slider(label, value, quantity.limits, change, step=quantity.step, figure=shown)
             column.explain(what["slider"])
-        buttons = column.words([
+        words: list[tuple[str, OnPress]] = [
             (texts.LAW_START_VALUES, self._reset),
             (texts.LAW_PLOT, self.toggle_plot),
             (texts.LAW_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             (texts.PHYSICS_MORE[self.more], self._open_more),
-        ])  # fmt: skip
-        self._button_help: list[tuple[ButtonRow, str]] = list(
-            zip(buttons, (what["start"], what["plot"], what["inside"]), strict=False)
-        )
+        ]
+        explained = what["start"], what["plot"], what["inside"]
+        self._button_help = list(zip(column.words(words), explained, strict=False))
         column.gap()
         if self.plot:
             self.plot.describe(column, self._progress)
@@ -253,7 +245,6 @@ class PhysicsScene(PanelScene):
         self.build()
 
     def _said(self) -> str:
-        """Return the law in the exhibit's own figures."""
         return texts.EXHIBITS[self.chosen][2][self.exhibit.state].format(**self.exhibit.figures())
 
     def _progress(self) -> str:
@@ -277,7 +268,6 @@ class PhysicsScene(PanelScene):
         return View.within(box, scale, (0.0, middle), box.width / wide)
 
     def _point(self, event: pygame.event.Event) -> None:
-        """Grip, pull or release a body."""
         self._mouse = event.pos
         if event.type == pygame.MOUSEBUTTONDOWN and (body := self._body_at(_REACH)):
             self.grip = Grip(body, self.view(1.0).metres(self._mouse))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -69,10 +70,8 @@ class PhysicsStepScene(PanelScene):
         self._tabs = panel.choice("", words, chosen, self._turn_to_kind)
         panel.text(lambda: self.record.sentence(self.piece, self.pair))
         last = len(self.pieces) - 1
-        self._slider = panel.slider(
-            texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1,
-            figure=lambda value: texts.STEP_PLACE.format(count=value + 1, total=last + 1),
-        )  # fmt: skip
+        count = partial(_counted, last + 1)
+        self._slider = panel.slider(texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1, figure=count)
         left, *right = panel.beside((1, 1) if self.in_code else (1,), least=_LEAST, apart=40.0)
         left.picture(_PICTURE, self._draw_picture)
         left.add(self._write_legend)
@@ -83,7 +82,6 @@ class PhysicsStepScene(PanelScene):
 
     @property
     def piece(self) -> Piece:
-        """The piece that is shown."""
         return self.pieces[self.place]
 
     def _follow(self, pair: Pair | None, kind: str = "") -> None:
@@ -256,13 +254,14 @@ class PhysicsStepScene(PanelScene):
 
     def _write_legend(self, cursor: Cursor) -> None:
         for colour, length, words in self._legend():
-            row = cursor.in_style(SMALL, MUTE)
             if cursor.canvas:
-                y = row.baseline - 4
-                _arrow(cursor.canvas, (row.left, y), (row.left + length, y), colour, 2)
-            row.left, row.width = row.left + _ARROW + 12, row.width - _ARROW - 12
-            row.text(words)
-            cursor.y = row.y
+                y = cursor.in_style(SMALL).baseline - 4
+                _arrow(cursor.canvas, (cursor.left, y), (cursor.left + length, y), colour, 2)
+            cursor.styled(words, SMALL, MUTE, indent=_ARROW + 12)
+
+
+def _counted(total: int, place: float) -> str:
+    return texts.STEP_PLACE.format(count=place + 1, total=total)
 
 
 def _scale(values: list[Array]) -> tuple[float, float] | None:

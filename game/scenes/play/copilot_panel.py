@@ -163,10 +163,5 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
         allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
     elif asked != COAST:
         allowed = (1.0 - decision.assist) * float(np.ptp(points))
-    return QValues(
-        tuple(points.tolist()),
-        int(decision.action[0]),
-        None if asked == COAST else asked,
-        tuple(feasible.tolist()),
-        allowed,
-    )
+    wish = None if asked == COAST else asked
+    return QValues(tuple(points.tolist()), int(decision.action[0]), wish, tuple(feasible.tolist()), allowed)

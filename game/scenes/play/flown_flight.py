@@ -130,7 +130,6 @@ class FlownFlight:
         return self.waiting and self._held_before and not self.flight.over
 
     def set_calm(self, calm: bool) -> None:
-        """Set whether motion is reduced."""
         self.scenery.calm = self.ending.calm = calm
         if calm:
             self.pace.hurry()
@@ -195,7 +194,6 @@ class FlownFlight:
         self._help()
 
     def follow(self) -> None:
-        """Follow the flight's step."""
         flight = self.flight
         if self.ghost:
             self.ghost.step()
@@ -245,7 +243,6 @@ class FlownFlight:
     # The end
 
     def reword(self) -> None:
-        """Say anew what is kept of words, in another language."""
         fresh = flight_readouts(self.flight.env)
         for name, readout in self._readouts.items():
             self._readouts[name] = replace(readout, label=fresh[name].label, what=fresh[name].what)
@@ -258,12 +255,9 @@ class FlownFlight:
         flight, credit, ending = self.flight, self.credit, self.ending
         ending.whole = self.scenery.shot_of(self.path.places)
         unranked = rung_of(flight) is not None or self.challenge.name
-        card = outcome_card(flight.env, flight.share)
-        card = replace(
-            card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason),
-            assists=credit.assists, who=credit.who, place=self.path.clear_place(ending.whole.view(1.0)),
-            compared=self._compared(self.best[1]),
-        )  # fmt: skip
+        card, place = outcome_card(flight.env, flight.share), self.path.clear_place(ending.whole.view(1.0))
+        card = replace(card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason))
+        card = replace(card, assists=credit.assists, who=credit.who, place=place, compared=self._compared(self.best[1]))
         if credit.helped:
             chance = None if card.good else self._last_chance
             while chance and not chance.known:

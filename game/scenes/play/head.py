@@ -117,7 +117,6 @@ class _Layout:
         return max(self._middle(_TOP if alone else max(keys, names) + 8, reach), keys, names)
 
     def _names(self, top: float) -> float:
-        """Write what is flown, at the left; return the lower end, 0 if there is nothing."""
         head = self.head
         if not (head.caption or head.name or head.aside):
             return 0.0
@@ -128,15 +127,12 @@ class _Layout:
                 draw_ladder(self.canvas, end, cursor.baseline, head.rung)
             cursor.text(head.caption)
         if head.name:
-            name = cursor.in_style(TEXT, INK)
-            name.text(head.name)
-            cursor.y = name.y
+            cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
             cursor.text(words)
         return cursor.y
 
     def _middle(self, top: float, beside: float) -> float:
-        """Write the sentence, and what stands below it; return the lower end."""
         head, view, canvas = self.head, self.canvas.view, self.canvas
         room = min(_WIDEST, view.width - 2 * max(self.side + 24, beside + 24))
         cursor = self.cursor(view.centerx - room / 2, top, room, _SENTENCE)
@@ -163,10 +159,8 @@ class _Layout:
     def _write_sentence(self, cursor: Cursor) -> None:
         head, canvas = self.head, self.canvas
         colour = canvas.palette.warn if head.warns else INK
-        words = cursor.in_style(colour=colour)
         top, width = cursor.y, min(cursor.measured(head.sentence), cursor.width)
-        words.text(head.sentence, "centre")
-        cursor.y = words.y
+        cursor.styled(head.sentence, colour=colour, align="centre")
         if self.drawn and head.lamp:
             lamp: Lamp = ("triangle", colour, 0.5) if head.warns else head.lamp
             shape, tint, glow = lamp
@@ -175,7 +169,6 @@ class _Layout:
             canvas.marker(shape, spot, 8 if shape == "circle" else 11, tint)
 
     def _write_paths(self, cursor: Cursor) -> None:
-        """Write the legend of the paths, side by side where there is room."""
         small = cursor.in_style(SMALL, MUTE)
         widths = [small.measured(words) + _DOTS for words, _ in self.head.paths]
         whole = sum(widths) + _APART * (len(widths) - 1)
@@ -227,7 +220,6 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
 
 
 def _asides(flown: FlownFlight) -> list[str]:
-    """Say what else is to be known of the flight."""
     flight, challenge, credit = flown.flight, flown.challenge, flown.credit
     off = flown.helps and flown.helped.assist == 0 < flown.context.settings.assist
     lines = [
