@@ -12,7 +12,7 @@ from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK
 from game.ui.chart import Chart
 from game.ui.plotting import Limits
-from game.ui.widget import OnPress, PointsManager, Widget
+from game.ui.widget import OnPress, Widget
 
 MOST: Final = 64.0  # times that the axis can be stretched
 STEP: Final = 1.25  # times for a notch of the wheel, or a press of + or -
@@ -143,7 +143,6 @@ class Scrubber(Widget):
 
     def __init__(
         self,
-        manager: PointsManager,
         charts: Charts,
         on_move: Callable[[float | int], None],
         on_press: OnPress,
@@ -151,7 +150,7 @@ class Scrubber(Widget):
     ) -> None:
         # For the arrows, its box is the first row: the virtual pointer over all charts is reached from there.
         first, *others = (chart.box for chart in charts.charts)
-        super().__init__(manager, first.unionall([box for box in others if box.top == first.top]), "")
+        super().__init__(first.unionall([box for box in others if box.top == first.top]), "")
         self._charts, self._on_move, self._on_press, self._on_zoom = charts, on_move, on_press, on_zoom
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:

@@ -27,7 +27,7 @@ _REPEAT_EVERY: Final = 4
 
 
 class Form:
-    """Widgets of a screen, one of them in focus; made with `form.manager` and added in the order of Tab.
+    """Widgets of a screen, one of them in focus; added in the order of Tab.
 
     A scene passes on `handle_event` and `update` and returns what they return; what a widget's callback
     returns comes out of one of the two. `on_back` answers Escape, or the pad's B. A scene that has commands of
@@ -89,6 +89,7 @@ class Form:
         return self.widgets[self._index] if self.widgets else None
 
     def add(self, widget: W) -> W:
+        widget.join(self.manager)
         self.widgets.append(widget)
         return widget
 
@@ -101,6 +102,8 @@ class Form:
             if widget not in new:
                 widget.kill()  # type: ignore[no-untyped-call]
         self.widgets[place:place] = new
+        for widget in new:
+            widget.join(self.manager)
         if focused in self.widgets:
             self.focus(focused)
         else:
@@ -236,7 +239,7 @@ class Part:
 
     def __init__(self, form: Form) -> None:
         self._form, self.widgets = form, list[Widget]()
-        self.manager, self.controls, self.in_order = form.manager, form.controls, True
+        self.controls, self.in_order = form.controls, True
 
     @property
     def focused(self) -> Widget | None:
@@ -244,6 +247,7 @@ class Part:
         return focused if focused in self.widgets else None
 
     def add(self, widget: W) -> W:
+        widget.join(self._form.manager)
         self.widgets.append(widget)
         return widget
 

@@ -16,7 +16,7 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT,
 from game.drawing.typeface import Weight
 from game.ui.curves import run_style
 from game.ui.tooltip import draw_swatch
-from game.ui.widget import EASE, NOWHERE, OnPress, PointsManager, RowWidget, mix
+from game.ui.widget import EASE, NOWHERE, OnPress, RowWidget, mix
 
 Words = str | Callable[[], str]  # a function for words that change
 _SWITCH: Final = (32.0, 16.0)
@@ -38,7 +38,6 @@ class ButtonRow(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         press: OnPress,
         aside: Words = "",
@@ -48,7 +47,7 @@ class ButtonRow(RowWidget):
         weight: Weight = "regular",
         colour: Colour = MUTE,
     ) -> None:
-        super().__init__(manager, NOWHERE, label)
+        super().__init__(NOWHERE, label)
         self._on_press, self._size, self._weight, self._colour = press, size, weight, colour
         self._aside, self._figure = aside, figure
 
@@ -101,8 +100,8 @@ class ButtonRow(RowWidget):
 class RunRow(ButtonRow):
     """Name of a run to press, after a piece of its line in a chart."""
 
-    def __init__(self, manager: PointsManager, name: str, style: int, press: OnPress) -> None:
-        super().__init__(manager, name, press, size=SMALL)
+    def __init__(self, name: str, style: int, press: OnPress) -> None:
+        super().__init__(name, press, size=SMALL)
         self.style = style
         self.pad = 3.0
 
@@ -118,10 +117,8 @@ class RunRow(ButtonRow):
 class ToggleRow(RowWidget):
     """Switch at the right end, its label and an explanation on the left."""
 
-    def __init__(
-        self, manager: PointsManager, label: str, value: bool, change: Callable[[bool], None], aside: str = ""
-    ) -> None:
-        super().__init__(manager, NOWHERE, label)
+    def __init__(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> None:
+        super().__init__(NOWHERE, label)
         self.value, self._on_change, self._aside = value, change, aside
         self._slid = float(value)
 
@@ -169,7 +166,6 @@ class SliderRow(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         value: float,
         limits: tuple[float, float],
@@ -180,7 +176,7 @@ class SliderRow(RowWidget):
         aside: str = "",
         ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
-        super().__init__(manager, NOWHERE, label)
+        super().__init__(NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
         self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
         self._track = (0.0, 1.0)
@@ -270,7 +266,6 @@ class ChoiceRow(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         options: Sequence[str],
         index: int,
@@ -280,7 +275,7 @@ class ChoiceRow(RowWidget):
         on_open: OnPress | None = None,
         all_word: str = "",
     ) -> None:
-        super().__init__(manager, NOWHERE, label)
+        super().__init__(NOWHERE, label)
         self.options, self.index, self._on_change, self._size = options, index, change, size
         self._on_open, self._all_word = on_open, all_word
         self._places: dict[int, pygame.FRect] = {}

@@ -78,12 +78,19 @@ class Widget(UIElement):
     spells = by_arrows = False
     follows_mouse = True
 
-    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
-        super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)
+    def __init__(self, box: pygame.typing.RectLike, label: str) -> None:
+        self._rect = self.relative_rect = pygame.Rect(box)
         self.label, self.help = label, ""
         self.focused = self.typing = self.ringed = self.held = False
         self.warmth = 0.0
         self.outcome: Transition | None = None
+        self._joined = False
+
+    def join(self, manager: PointsManager) -> None:
+        """Become one of a form's elements, once, when it is added there."""
+        if not self._joined:
+            self._joined = True
+            super().__init__(self.relative_rect, manager, None, starting_height=1, layer_thickness=1)
 
     @property
     def box(self) -> pygame.Rect:

@@ -11,7 +11,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
 from game.flight.flight import StickHolder
-from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widget import Widget, mix
 
 V = TypeVar("V")
 _LABELS: Final = 84.0  # room for the lanes' names
@@ -28,7 +28,6 @@ class Timeline(Widget):
 
     def __init__(
         self,
-        manager: PointsManager,
         box: tuple[float, float, float, float],
         words: Sequence[str],
         actions: Sequence[int],
@@ -36,7 +35,7 @@ class Timeline(Widget):
         on_go_to: Callable[[int], None],
         on_press: Callable[[], None],
     ) -> None:
-        super().__init__(manager, box, "")
+        super().__init__(box, "")
         self._still = PaintCache()
         self._words, self._on_go_to, self._on_press = words, on_go_to, on_press
         self.length = max(1, len(actions))

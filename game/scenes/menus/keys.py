@@ -14,7 +14,7 @@ from game.input.bindings import Bindings, Meaning
 from game.input.controls import Command, Controls, Held, key_name
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
-from game.ui.widget import PointsManager, RowWidget, mix
+from game.ui.widget import RowWidget, mix
 
 if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
@@ -34,13 +34,12 @@ class BindingCell(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         controls: Controls,
         bindings: Bindings,
         meaning: Meaning,
         on_change: Callable[[str], None],
     ) -> None:
-        super().__init__(manager, (0, 0, 1, 1), texts.BINDINGS[meaning.name])
+        super().__init__((0, 0, 1, 1), texts.BINDINGS[meaning.name])
         self._controls, self._bindings, self._meaning, self._on_change = controls, bindings, meaning, on_change
         self._for_pads = bindings is controls.buttons
 
@@ -150,7 +149,7 @@ class BindingsScene(PanelScene):
             name.gap(BindingCell.pad)
             name.text(texts.BINDINGS[meaning.name])
             for cell, bindings in zip(cells, (controls.keys, controls.buttons), strict=True):
-                cell.widget(BindingCell(self.form.manager, controls, bindings, meaning, self._changed))
+                cell.widget(BindingCell(controls, bindings, meaning, self._changed))
         panel.line()
         panel.gap(8)
         panel.button(texts.BINDINGS_ALL, self._reset_all)

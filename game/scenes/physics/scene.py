@@ -197,9 +197,7 @@ class PhysicsScene(PanelScene):
         left.text(texts.EXHIBITS[self.chosen][1])
         left.text(self._said, size=SMALL, colour=MUTE, tabular=True)
         left.gap()
-        self.room_row = left.widget(
-            PictureRow(self.form.manager, texts.POINTER, self._height, self._point, hold=texts.POINTER_GRIP)
-        )
+        self.room_row = left.widget(PictureRow(texts.POINTER, self._height, self._point, hold=texts.POINTER_GRIP))
         left.add(self._write_legend)
         self._describe_bench(right)
 

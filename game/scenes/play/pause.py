@@ -67,8 +67,8 @@ class PauseScene(PanelScene):
         self.describe_below(panel)
         panel.gap(8)
         retry = [(self._retry_word or texts.PAUSE_RETRY, self._begin_anew)] if self._retry else []
-        ways = [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
-        rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more(), *ways]
+        rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
+        rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
         for label, press in rows:
             panel.button(label, press, size=_WORD, weight="light", colour=INK)
 

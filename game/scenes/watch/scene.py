@@ -80,7 +80,7 @@ class WatchScene(FormScene):
         wanted = names.index(first) if first in names else 0
         self._rows: list[Widget] = []
         self._describe(wanted)
-        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, context.view))
+        self.hand = self.form.add(Hand(self.world, _TOUCHED, context.view))
         self._choose_network(wanted)
         if self.problem:
             self.network = self.policies.first_fit()

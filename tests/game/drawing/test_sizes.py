@@ -25,9 +25,9 @@ def test_points_and_pixels_lead_to_each_other(subtests: pytest.Subtests):
             for corner in ((0, 0), VIEW_SIZE):
                 pixels = [round(p * canvas.scale + o) for p, o in zip(corner, canvas.origin, strict=True)]
                 assert all(-1 <= p <= limit + 1 for p, limit in zip(pixels, size, strict=True))
-            for place in ((0, 0), (1, 719), (640, 360), (1279.5, 3)):
-                box = canvas.rect(*place, 1, 1)
-                assert canvas.points(box.topleft) == pytest.approx(place, abs=1 / canvas.scale)
+            for x, y in ((0, 0), (1, 719), (640, 360), (1279.5, 3)):
+                box = canvas.rect(x, y, 1, 1)
+                assert canvas.points(box.topleft) == pytest.approx((x, y), abs=1 / canvas.scale)
 
 
 @settings(deadline=None, max_examples=25)
