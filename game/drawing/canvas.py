@@ -393,7 +393,4 @@ class Canvas:
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:
     """Return how far a page is moved to an edge of the view, or two, in points; see `Canvas.at`."""
-    return (
-        (0.0, view.right - VIEW_SIZE[0], view.left)[across],
-        (0.0, view.bottom - VIEW_SIZE[1], view.top)[down],
-    )
+    return ((0.0, view.right - VIEW_SIZE[0], view.left)[across], (0.0, view.bottom - VIEW_SIZE[1], view.top)[down])

@@ -166,7 +166,7 @@ class Device:
 KEYBOARD: Final = Device(KEYS, FIXED_KEYS, _SPARE_KEYS, _TAKEN_KEYS, _ENGINE_KEYS, _named("K_"))
 PAD: Final = Device(
     BUTTONS, FIXED_BUTTONS, {}, frozenset(), _ENGINE_BUTTONS,
-    {**_named("CONTROLLER_BUTTON_"), "triggerleft": TRIGGER_LEFT, "triggerright": TRIGGER_RIGHT},
+    {**_named("CONTROLLER_BUTTON_"), "triggerleft": TRIGGER_LEFT, "triggerright": TRIGGER_RIGHT}
 )  # fmt: skip
 
 

@@ -142,11 +142,7 @@ class Scrubber(Widget):
     """
 
     def __init__(
-        self,
-        charts: Charts,
-        on_move: Callable[[float | int], None],
-        on_press: OnPress,
-        on_zoom: Callable[[int], None],
+        self, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress, on_zoom: Callable[[int], None]
     ) -> None:
         # For the arrows, its box is the first row: the virtual pointer over all charts is reached from there.
         first, *others = (chart.box for chart in charts.charts)

@@ -116,12 +116,7 @@ class EntryRow(RowWidget):
     spells = True
 
     def __init__(
-        self,
-        text: str,
-        accept: Callable[[str], Transition | None],
-        cancel: OnPress,
-        limit: int,
-        fits: Fits,
+        self, text: str, accept: Callable[[str], Transition | None], cancel: OnPress, limit: int, fits: Fits
     ) -> None:
         super().__init__(NOWHERE, "")
         self._given = text, limit, fits

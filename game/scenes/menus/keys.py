@@ -33,11 +33,7 @@ class BindingCell(RowWidget):
     pad = 4.0
 
     def __init__(
-        self,
-        controls: Controls,
-        bindings: Bindings,
-        meaning: Meaning,
-        on_change: Callable[[str], None],
+        self, controls: Controls, bindings: Bindings, meaning: Meaning, on_change: Callable[[str], None]
     ) -> None:
         super().__init__((0, 0, 1, 1), texts.BINDINGS[meaning.name])
         self._controls, self._bindings, self._meaning, self._on_change = controls, bindings, meaning, on_change
