@@ -17,7 +17,7 @@ from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.scene import PlayScene
 from game.ui.actions import hints_of
 from game.ui.context import Context
-from game.ui.form import DOWN, LEFT, RIGHT, UP, Form, neighbour
+from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.listing import shortened
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
