@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import pygame
 from pygame_gui import UIManager
 from pygame_gui.core import UIElement
+from pygame_gui.core.layered_gui_group import GUISprite
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 from pygame_gui.core.utility import set_default_manager
 
@@ -79,7 +80,8 @@ class Widget(UIElement):
     follows_mouse = True
 
     def __init__(self, box: pygame.typing.RectLike, label: str) -> None:
-        self._rect = self.relative_rect = pygame.Rect(box)
+        GUISprite.__init__(self)  # which has a place already before it joins a form
+        self.rect = self.relative_rect = pygame.Rect(box)
         self.label, self.help = label, ""
         self.focused = self.typing = self.ringed = self.held = False
         self.warmth = 0.0
@@ -90,7 +92,7 @@ class Widget(UIElement):
         """Become one of a form's elements, once, when it is added there."""
         if not self._joined:
             self._joined = True
-            super().__init__(self.relative_rect, manager, None, starting_height=1, layer_thickness=1)
+            super().__init__(self.rect, manager, None, starting_height=1, layer_thickness=1)
 
     @property
     def box(self) -> pygame.Rect:

@@ -14,9 +14,9 @@ from game.core.scene import push
 from game.digits.cells import CellPicker
 from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, TITLE
+from game.drawing.tokens import HUMAN, SMALL, TITLE
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
 from game.scenes.digits.sums import describe_sum, figure
@@ -230,7 +230,7 @@ class DigitInsideScene(PanelScene):
         if found := code_of(self.walk):
             draw_listing(canvas, box, *found)
         else:
-            draw_wrapped(canvas, texts.PATCH_NO_CODE, (box.left, box.top + 16), box.width)
+            Cursor(box.left, box.top, box.width, canvas.scale, canvas).styled(texts.PATCH_NO_CODE, SMALL)
 
 
 def _signed(values: Numbers) -> Numbers:

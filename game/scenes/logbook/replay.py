@@ -38,8 +38,7 @@ from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
-from game.ui.form import Part
-from game.ui.form_scene import FormScene
+from game.ui.form import FormScene, Part
 from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.playback import Playback

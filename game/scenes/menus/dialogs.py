@@ -13,8 +13,7 @@ from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Scene, Transition
 from game.drawing.tokens import FAINT
 from game.ui.hints import HintRow, hint_lines
-from game.ui.panel_scene import PanelScene
-from game.ui.still_picture import StillPicture
+from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas

@@ -14,7 +14,6 @@ from game.core import texts
 from game.core.source import source_of
 from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
-from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
@@ -125,7 +124,7 @@ class PhysicsStepScene(PanelScene):
     def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
         piece, source = self.piece, source_of(self.piece.function)
         if source is None:
-            draw_wrapped(canvas, texts.STEP_NO_SOURCE, (box.left, box.top + 14), box.width, colour=MUTE)
+            Cursor(box.left, box.top, box.width, canvas.scale, canvas).aside(texts.STEP_NO_SOURCE)
             return
         draw_listing(canvas, box, source, piece.line, piece.notes)
 

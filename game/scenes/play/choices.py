@@ -13,8 +13,7 @@ from game.flight.handicap import HANDS
 from game.input.controls import Command
 from game.scenes.play.help import GUARDIAN, HELP, MODES, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
-from game.ui.panel_scene import PanelScene
-from game.ui.still_picture import StillPicture
+from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas

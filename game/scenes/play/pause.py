@@ -17,8 +17,7 @@ from game.input.controls import Command
 from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Table
 from game.ui.hints import HintRow, hint_lines
-from game.ui.panel_scene import PanelScene
-from game.ui.still_picture import StillPicture
+from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas

@@ -30,8 +30,7 @@ from game.scenes.watch.touch import Hand
 from game.scenes.watch.watched import SIZES, Watched
 from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
-from game.ui.form import Part
-from game.ui.form_scene import FormScene
+from game.ui.form import FormScene, Part
 from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.widget import OnPress, Widget
