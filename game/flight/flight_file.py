@@ -13,9 +13,21 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, TypeVar
 
-from ai.files import OneOf, Share, Sized, Within, brief, check_header, parse_json, read_as, read_text, write_text
+from ai.files import (
+    OneOf,
+    Share,
+    Sized,
+    Within,
+    brief,
+    check_header,
+    parse_json,
+    read_as,
+    read_lines,
+    read_text,
+    write_text,
+)
 from ai.flights.recording import LONGEST, STEPS, End, LegAsList, Recording, Shares, Start, StickHolder
 from ai.flights.verification import COURSES
 from ai.lander.environment import NUM_ACTIONS, Outcome
@@ -24,6 +36,7 @@ from ai.lander.rules import AREAS
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.core import texts
 
+T = TypeVar("T")
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 5
 # Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no shares
@@ -105,6 +118,20 @@ class Entry:
 def rules_of(challenge: str) -> int:
     """Return the present version of a mission's rules."""
     return MISSIONS[challenge].rules if challenge in MISSIONS else 0
+
+
+def lines_of(kind: type[T], path: Path, most: int, damaged: str) -> tuple[list[T], str]:
+    """Return the sound lines in the last `most` bytes of a file, and a sentence on what is wrong; empty if nothing.
+
+    `damaged` is said of invalid lines, with their `count` and the `path`; they stay in the file.
+    """
+    try:
+        found, lost = read_lines(kind, path, most)
+    except FileNotFoundError:
+        return [], ""
+    except OSError as error:
+        return [], texts.FLIGHTS_UNREADABLE.format(path=path, reason=error.strerror or error)
+    return found, damaged.format(count=lost, path=path) if lost else ""
 
 
 @dataclass(frozen=True)

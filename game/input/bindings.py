@@ -53,10 +53,7 @@ Table = Mapping[Meaning, tuple[int, ...]]
 
 # A gamepad's triggers are axes; they are treated as further buttons, pressed or not.
 TRIGGER_LEFT, TRIGGER_RIGHT = 32, 33
-TRIGGERS: Final = {
-    pygame.CONTROLLER_AXIS_TRIGGERLEFT: TRIGGER_LEFT,
-    pygame.CONTROLLER_AXIS_TRIGGERRIGHT: TRIGGER_RIGHT,
-}
+TRIGGERS: Final = {pygame.CONTROLLER_AXIS_TRIGGERLEFT: TRIGGER_LEFT, pygame.CONTROLLER_AXIS_TRIGGERRIGHT: TRIGGER_RIGHT}
 
 # Fixed bindings.
 FIXED_KEYS: Final[Table] = {
@@ -121,18 +118,18 @@ BUTTONS: Final[Table] = {
 GIVE_WAY: Final = frozenset({Held.FINE, Command.MUTE})
 # Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {
-    pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT,
+    pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT
 }  # fmt: skip
 # Keys that screens, lists and text lines use themselves, and modifier keys.
 _TAKEN_KEYS: Final = frozenset({
     pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F2, pygame.K_z,
     *range(pygame.K_0, pygame.K_9 + 1), *range(pygame.K_KP1, pygame.K_KP0 + 1),
-    pygame.K_LALT, pygame.K_RALT, pygame.K_LGUI, pygame.K_RGUI, pygame.K_CAPSLOCK, pygame.K_NUMLOCK,
+    pygame.K_LALT, pygame.K_RALT, pygame.K_LGUI, pygame.K_RGUI, pygame.K_CAPSLOCK, pygame.K_NUMLOCK
 })  # fmt: skip
 _ENGINE_KEYS: Final = frozenset({pygame.K_UP, pygame.K_DOWN, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_SPACE})
 _ENGINE_BUTTONS: Final = frozenset({
     pygame.CONTROLLER_BUTTON_A, pygame.CONTROLLER_BUTTON_B, pygame.CONTROLLER_BUTTON_DPAD_UP,
-    pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_LEFT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
+    pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_LEFT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT
 })  # fmt: skip
 
 

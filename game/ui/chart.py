@@ -139,18 +139,14 @@ class Chart:
         first = not any(run.last() is not None for run in self.runs)
         self.runs, self.x_range, self._ticks, self.caption = runs, span, tuple(ticks), caption
         self._x_ends = tuple(dict.fromkeys((start, max(start, end))))
-        self._set_limits()
+        shown = (
+            None if self.fixed or not runs else plotting.robust_range(np.concatenate([r.within(span) for r in runs]))
+        )
+        if shown is not None:
+            self._lines = plotting.steady_grid(shown, self._lines, self._make_grid)
         if first:
             self._shown = self.limits
         self._stale = True
-
-    def _set_limits(self) -> None:
-        if self.fixed:
-            return
-        shown = [run.within(self.x_range) for run in self.runs]
-        span = plotting.robust_range(np.concatenate(shown)) if shown else None
-        if span is not None:
-            self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
 
     def mark(self, x: float | None, caption: str = "") -> None:
         """Put the marker at x: a vertical line with a caption and a dot on the current run's curve; None removes it."""

@@ -10,6 +10,7 @@ from typing import Final
 
 import pygame
 
+from game.core import texts
 from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
@@ -31,6 +32,11 @@ _SWATCH: Final = 27.0  # points for a piece of a line before a name
 def said(words: Words) -> str:
     """Return words as they are now."""
     return words if isinstance(words, str) else words()
+
+
+def percent(share: float) -> str:
+    """Return a share, 0 to 1, as it is written."""
+    return texts.SOUND_SHARE.format(percent=round(100 * share))
 
 
 class ButtonRow(RowWidget):

@@ -20,7 +20,7 @@ from game.drawing.tokens import HUMAN, NET, Colour
 from game.flight.forecast import surface_height
 from game.world import lander as art
 from game.world.camera import View
-from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
+from game.world.craft import STAND, draw_craft, draw_fires, foot_place, scaling, shaded, stand
 from game.world.flame import begin_flames
 from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles, Relief
@@ -211,10 +211,6 @@ class Stage:
     def draw_fires(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
         """Draw the flames of those whose main engine burns."""
         draw_fires(canvas, view, poses[shown & (self.thrust[:, 0] > 0.25)], self._flicker, size)
-
-    def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
-        """Draw the landers themselves."""
-        draw_crowd(canvas, view, poses[shown], size)
 
     def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw dust, sparks and fragments."""

@@ -95,7 +95,7 @@ class ReplayScene(FormScene):
 
     def enter(self) -> None:
         self.playback.stopped = True
-        self._scenery.calm = self.context.settings.reduced_motion
+        self._scenery.set_calm(self.context.settings.reduced_motion)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return None if self.explained.handle_event(event) else super().handle_event(event)

@@ -19,6 +19,7 @@ from game.input.controls import Command, Held
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
 from game.ui.panel_scene import PanelScene
+from game.ui.rows import percent
 from game.world import lander
 
 if TYPE_CHECKING:
@@ -121,7 +122,7 @@ class SettingsScene(PanelScene):
         settings = self.context.settings
         self._toggles(left, "wider_pads", "untimed")
         left.slider(
-            texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1, figure=_percent
+            texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1, figure=percent
         )
         left.gap(6)
         left.aside(texts.ASSISTS_COUNTED)
@@ -153,10 +154,9 @@ class SettingsScene(PanelScene):
     # Progress
 
     def _ask_to_reset(self) -> Transition:
-        figures = self._progress.figures
-        flights, medals = texts.PROGRESS_FLIGHTS.format(count=figures.flights), texts.PROGRESS_MEDALS
-        chapters = texts.PROGRESS_CHAPTERS.format(count=figures.chapters)
-        more = " ".join((flights, medals.format(count=figures.medals), chapters, texts.PROGRESS_STAYS))
+        kinds = texts.PROGRESS_FLIGHTS, texts.PROGRESS_MEDALS, texts.PROGRESS_CHAPTERS
+        lost = [text.format(count=count) for text, count in zip(kinds, self._progress.figures, strict=True)]
+        more = " ".join([*lost, texts.PROGRESS_STAYS])
         answers = [(texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset)]
         return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, more, answers))
 
@@ -201,9 +201,5 @@ def _draw_scene(canvas: Canvas, box: pygame.FRect) -> None:
         canvas.bar((column.left, figures.y + 2, column.width - 20, 3), share, good if within else warn)
 
 
-def _percent(share: float) -> str:
-    return texts.SOUND_SHARE.format(percent=round(100 * share))
-
-
 def _loudness(volume: float) -> str:
-    return _percent(volume) if volume else texts.SOUND_OFF
+    return percent(volume) if volume else texts.SOUND_OFF

@@ -14,6 +14,7 @@ from game.input.controls import Command
 from game.scenes.play.help import GUARDIAN, HELP, MODES, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene, StillPicture
+from game.ui.rows import percent
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -89,7 +90,7 @@ class ChoicesScene(PanelScene):
         helped = self._helped
         ticks = {HELP[word]: texts.HELP[word] for word in (HELP if helped.copilot == GUARDIAN else ["off"])}
         change = partial(self._help, "assist")
-        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), change, step=0.1, figure=_percent, ticks=ticks)
+        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), change, step=0.1, figure=percent, ticks=ticks)
         index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
         left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
         left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])
@@ -107,7 +108,7 @@ class ChoicesScene(PanelScene):
     def _share(self, column: Column, name: str, label: str, limits: tuple[float, float], aside: str) -> None:
         value = getattr(self.context.settings, name)
         column.slider(
-            label, value, limits, lambda to: self._set(name, round(to, 2)), step=0.1, figure=_percent, aside=aside
+            label, value, limits, lambda to: self._set(name, round(to, 2)), step=0.1, figure=percent, aside=aside
         )
 
     def _help(self, name: str, value: float | str) -> None:
@@ -138,7 +139,3 @@ class ChoicesScene(PanelScene):
 
 def _rung(rung: float) -> str:
     return texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP
-
-
-def _percent(share: float) -> str:
-    return texts.SOUND_SHARE.format(percent=round(100 * share))

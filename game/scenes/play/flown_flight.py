@@ -130,7 +130,8 @@ class FlownFlight:
         return self.waiting and self._held_before and not self.flight.over
 
     def set_calm(self, calm: bool) -> None:
-        self.scenery.calm = self.ending.calm = calm
+        self.ending.calm = calm
+        self.scenery.set_calm(calm)
         if calm:
             self.pace.hurry()
 

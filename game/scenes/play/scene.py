@@ -112,7 +112,8 @@ class PlayScene(Scene):
         if event.type in _INTERRUPTS:
             self.flown.hang()
         if self.flown.helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
-            self._name_what_lacks()
+            if self.flown.helped.assist > 0 and (lack := self._lack):
+                self.context.note(lack)
             return None
         self._stick.take(event)
         if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
@@ -206,11 +207,6 @@ class PlayScene(Scene):
         elif self.flight.network is None and not self.flight.over:
             problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
-
-    def _name_what_lacks(self) -> None:
-        """Tell the player why the dial has no effect, where it has none."""
-        if self.flown.helped.assist > 0 and (lack := self._lack):
-            self.context.note(lack)
 
     @property
     def _lack(self) -> str:

@@ -202,7 +202,7 @@ class Watched:
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
         draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
         self.trails.draw(canvas, view, self.shown, _CLEAR.head)
-        self.stage.draw_swarm(canvas, view, poses, others, size)
+        draw_crowd(canvas, view, poses[others], size)
         self._draw_shown(canvas, view, poses[self.shown])
         self.stage.draw_dust(canvas, view, between)
 
