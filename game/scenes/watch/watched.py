@@ -23,6 +23,7 @@ from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
 from game.world.camera import Camera, CameraTarget, ClearArea, View
+from game.world.craft import draw_crowd
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails

@@ -153,7 +153,7 @@ def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
         trails.draw(canvas, view, 0)
         draw_dotted(canvas, view, np.array([[0.0, 12.0], [2.0, 9.0], [3.0, 2.0]]), (255, 196, 112))
         stage.draw_fires(canvas, view, poses, ~nobody, 0.5)
-        stage.draw_swarm(canvas, view, poses, ~nobody, 0.5)
+        draw_crowd(canvas, view, poses[~nobody], 0.5)
         stage.draw_lander(canvas, view, poses[0])
         stage.draw_dust(canvas, view, 0.5)
         pictures.append(pixels(canvas.surface))
