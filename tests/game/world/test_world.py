@@ -9,7 +9,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky, beside
 from game.world import lander as art
 from game.world.camera import Camera, View
-from game.world.craft import stand
+from game.world.craft import draw_crowd, stand
 from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
