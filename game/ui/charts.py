@@ -32,7 +32,6 @@ class Zoom:
         self.reset()
 
     def reset(self) -> None:
-        """Show the whole axis."""
         self.factor, self._middle = 1.0, 1.0  # the middle in units of the axis; the end, if it is beyond that
 
     @property
@@ -130,7 +129,6 @@ class Charts:
             patient.renew()
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw all charts, the one with the tooltip last so that nothing covers it."""
         for chart in sorted(self.charts, key=lambda chart: chart.pointed):
             chart.draw(canvas)
 

@@ -59,7 +59,6 @@ class Form:
 
     @property
     def moves(self) -> Hint:
-        """Hint of the arrows, which move the focus."""
         return Hint(self.controls.arrows, texts.HINT_MOVE)
 
     @property
@@ -70,11 +69,9 @@ class Form:
         return self.confirms(texts.HINT_CHANGE)
 
     def confirms(self, hint: str) -> Action:
-        """Return the action that presses the focused widget."""
         return Action(Command.CONFIRM, self.confirm, hint)
 
     def goes_back(self, hint: str) -> Action:
-        """Return the action of Escape, or the pad's B."""
         return Action(Command.BACK, self._on_back, hint)
 
     @property

@@ -95,7 +95,6 @@ class ListRow(RowWidget):
         return self.box.right - (_BAR + _GAP if len(self.rows) > self.room else 0.0)
 
     def choose(self, index: int) -> None:
-        """Choose a row, and scroll it into view."""
         index = min(max(index, 0), len(self.rows) - 1)
         if self.rows and index != self.index:
             self.index = index

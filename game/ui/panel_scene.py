@@ -67,7 +67,6 @@ class PanelScene(FormScene, ABC):
         self.lay_out()
 
     def reword(self) -> None:
-        """Describe the rows in the other language."""
         self.build()
 
     def room(self, canvas: Canvas) -> pygame.FRect:

@@ -188,7 +188,6 @@ class ReplayScene(FormScene):
 
     @property
     def ended(self) -> bool:
-        """Whether the last moment is shown."""
         return self.flight_replay.complete and self.flight_replay.at >= self.flight_replay.reached
 
     def _fly(self) -> None:

@@ -96,7 +96,6 @@ class CopilotPanel:
         self._overridden = bool(decision.overridden[0])
 
     def box(self, canvas: Canvas) -> pygame.FRect:
-        """Return where it stands, in points of a canvas for text that flows."""
         view, (width, height) = canvas.view, _SIZE
         side = min(_SIDE, 0.03 * view.width)
         high = height + (_PADS_HIGH if self._likely else 0)

@@ -20,7 +20,7 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEX
 from game.explain.readouts import Lamp
 from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
-from game.ui.hints import Hint, HintRow, flight_hints
+from game.ui.hints import Hint, HintRow, flight_hints, split
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -96,13 +96,7 @@ class _Layout:
         return Cursor(left, y, width, self.canvas.scale, self.canvas if self.drawn else None, size=size, colour=colour)
 
     def key_rows(self) -> list[HintRow]:
-        rows: list[list[Hint]] = []
-        for hint in self.head.hints:
-            if rows and HintRow([*rows[-1], hint], (0, 0)).width(self.canvas) <= self.beside:
-                rows[-1].append(hint)
-            else:
-                rows.append([hint])
-        right = self.canvas.view.right - self.side
+        rows, right = split(self.head.hints, self.canvas, self.beside), self.canvas.view.right - self.side
         return [HintRow(row, (right, _TOP + 16 + _LINE * number), from_right=True) for number, row in enumerate(rows)]
 
     def write(self) -> float:

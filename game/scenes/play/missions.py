@@ -58,7 +58,6 @@ class MissionsScene(PanelScene):
 
     @property
     def chosen(self) -> str:
-        """Name of the chosen mission."""
         return _NAMES[self._index]
 
     # Rows

@@ -290,12 +290,10 @@ class PlayScene(Scene):
 
     @property
     def waiting(self) -> bool:
-        """Whether the craft still hangs until the pilot's first touch."""
         return self.flown.waiting
 
     @property
     def _elsewhere(self) -> bool:
-        """Whether the next flight is flown where it is not as on the moon."""
         return self.challenge.elsewhere or (self.challenge.free and self._settings.gravity != 1)
 
     def _load_network(self) -> None:
