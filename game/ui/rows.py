@@ -60,16 +60,13 @@ class ButtonRow(RowWidget):
     def press(self) -> Transition | None:
         return self._on_press()
 
-    def tint(self) -> Colour:
-        return mix(self._colour, INK, self.warmth)
-
     def measured(self, cursor: Cursor) -> float:
         """Return the width of its words on one line, with something to spare."""
         return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
-        label, top = cursor.in_style(self._size, self.tint(), self._weight), cursor.y
-        wide, figure = min(label.measured(self.label), cursor.width), said(self._figure)
+        label = cursor.in_style(self._size, mix(self._colour, INK, self.warmth), self._weight)
+        top, wide, figure = cursor.y, min(label.measured(self.label), cursor.width), said(self._figure)
         label.text(self.label)
         if cursor.canvas and self.warmth * wide > 1:
             y = label.y - 0.05 * self._size + 2

@@ -18,7 +18,7 @@ from pygame_gui.core.utility import set_default_manager
 
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, MUTE, VIEW_SIZE, Colour
+from game.drawing.tokens import HUMAN, INK, VIEW_SIZE, Colour
 from game.input.controls import Controls
 from game.ui.hints import Hint
 
@@ -149,10 +149,6 @@ class Widget(UIElement):
         canvas.cover(canvas.rect(*self.box))
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
-
-    def tint(self) -> Colour:
-        """Return the label's colour: muted, or ink when in focus."""
-        return mix(MUTE, INK, self.warmth)
 
 
 class RowWidget(Widget):
