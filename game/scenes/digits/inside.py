@@ -230,7 +230,7 @@ class DigitInsideScene(PanelScene):
         if found := code_of(self.walk):
             draw_listing(canvas, box, *found)
         else:
-            Cursor(box.left, box.top, box.width, canvas.scale, canvas).styled(texts.PATCH_NO_CODE, SMALL)
+            Cursor(box.left, box.top, box.width, canvas.scale, canvas).styled(texts.LESSON_NO_SOURCE, SMALL)
 
 
 def _signed(values: Numbers) -> Numbers:

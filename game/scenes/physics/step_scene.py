@@ -124,7 +124,7 @@ class PhysicsStepScene(PanelScene):
     def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
         piece, source = self.piece, source_of(self.piece.function)
         if source is None:
-            Cursor(box.left, box.top, box.width, canvas.scale, canvas).aside(texts.STEP_NO_SOURCE)
+            Cursor(box.left, box.top, box.width, canvas.scale, canvas).aside(texts.LESSON_NO_SOURCE)
             return
         draw_listing(canvas, box, source, piece.line, piece.notes)
 

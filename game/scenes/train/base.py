@@ -187,8 +187,6 @@ class TrainingScene(FormScene, ABC):
         pointers = self._pointers()
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        for row in (*self.panel.rows, *self._foot.rows):
-            row.what = ""  # a word that is read needs no tooltip; the help of a knob stands at the foot
         form.replace(before, [*pointers, *body.widgets, *foot.widgets])
         if focused is not None and focused not in form.widgets:
             alike = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)
@@ -391,7 +389,6 @@ class TrainingScene(FormScene, ABC):
         box = (left, top, width, cursor.y - top + 8)
         canvas.panel(box, 1.0)
         self._write_title(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), status)
-        canvas.explain(box, texts.EXPLAIN_TRAINED)
         HintRow(self.hints[:1], (left + width - 16, top + 30), from_right=True).draw(canvas)
 
     def _write_title(self, cursor: Cursor, status: TrainingStatus) -> None:
