@@ -35,16 +35,15 @@ def code(record: Record) -> str:
     return code_of(shared(record))
 
 
-def record_of(flight: SharedFlight, when: float, real: Earned | None = None) -> Record:
-    """Return the record of a shared flight: as it is claimed, or as it is `real`, once it has been flown again."""
+def record_of(flight: SharedFlight, when: float) -> Record:
+    """Return the record of a shared flight as it is claimed."""
     recording, claim = flight.recording, flight.claim
-    said = real or claim
-    seconds, fuel, medal = (real.seconds, real.fuel, real.medal) if real else (len(recording.actions) * DT, 0.0, 0)
+    seconds = len(recording.actions) * DT
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
-    entry = Entry(when, said.outcome.name, seconds, fuel, 0.0, round(by_hand, 4), pads=recording.pads, medal=medal)
+    entry = Entry(when, claim.outcome.name, seconds, 0.0, 0.0, round(by_hand, 4), pads=recording.pads)
     rules = flight_file.rules_of(recording.mission)
-    entry = replace(entry, score=said.points, course=flight.course, barred=flight.barred, rules=rules)
-    return Record(recording, entry, said.end)
+    entry = replace(entry, score=claim.points, course=flight.course, barred=flight.barred, rules=rules)
+    return Record(recording, entry, claim.end)
 
 
 def flights_in(text: str) -> Iterator[SharedFlight | str]:
