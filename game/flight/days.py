@@ -77,7 +77,7 @@ class Days:
         self.attempts: Mapping[str, Attempt] = self._read()
 
     def _read(self) -> dict[str, Attempt]:
-        attempts, self.problem = lines_of(Attempt, self._path, _LARGEST, texts.DAYS_DAMAGED)
+        attempts, self.problem = lines_of(Attempt, self._path, _LARGEST)
         found: dict[str, Attempt] = {}
         for attempt in attempts:
             before = found.get(attempt.day)

@@ -120,10 +120,10 @@ def rules_of(challenge: str) -> int:
     return MISSIONS[challenge].rules if challenge in MISSIONS else 0
 
 
-def lines_of(kind: type[T], path: Path, most: int, damaged: str) -> tuple[list[T], str]:
+def lines_of(kind: type[T], path: Path, most: int) -> tuple[list[T], str]:
     """Return the sound lines in the last `most` bytes of a file, and a sentence on what is wrong; empty if nothing.
 
-    `damaged` is said of invalid lines, with their `count` and the `path`; they stay in the file.
+    Invalid lines stay in the file.
     """
     try:
         found, lost = read_lines(kind, path, most)
@@ -131,7 +131,7 @@ def lines_of(kind: type[T], path: Path, most: int, damaged: str) -> tuple[list[T
         return [], ""
     except OSError as error:
         return [], texts.FLIGHTS_UNREADABLE.format(path=path, reason=error.strerror or error)
-    return found, damaged.format(count=lost, path=path) if lost else ""
+    return found, texts.FLIGHTS_DAMAGED.format(count=lost, path=path) if lost else ""
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ class Records:
 
         Invalid lines are counted in `problem` and left in the file.
         """
-        found, self.problem = flight_file.lines_of(Entry, self.logbook, _LARGEST, texts.FLIGHTS_DAMAGED)
+        found, self.problem = flight_file.lines_of(Entry, self.logbook, _LARGEST)
         return found
 
     def kept(self) -> set[str]:

@@ -288,12 +288,8 @@ class TrainingCharts(Charts):
                     canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
                     y += _LEADING
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
-            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
+            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)
-
-
-def _latest(chart: Chart) -> str:
-    return texts.EXPLAIN_CHART_NOW.format(value=chart.latest)
 
 
 def _written(form: str, value: float) -> str:

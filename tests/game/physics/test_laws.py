@@ -149,7 +149,7 @@ def test_the_panel_shows_law_measurement_and_their_difference():
     results, exhibit = Results(), EXHIBITS["bounce"](EARTH)
     panel = LawPlot(exhibit, "drop", results)
     [(waiting, _)] = panel.sentences("")
-    assert waiting.startswith("Law 3.38 m. It is measured")
+    assert waiting.startswith("Law 3.38 m. Measured")
     result = measured(exhibit)
     results.add(exhibit)
     panel.refresh()
