@@ -17,7 +17,7 @@ from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from tests.support.driver import Driver
 from tests.support.screens import save_settings
-from tests.support.written import Written
+from tests.support.written import Written, words_written
 
 LONG = "One switch fires the engine, and the jets steer by themselves, so that a single key is enough to land. " * 2
 WINDOWS = [(1280, 720), (1920, 1080), (2560, 1080), (800, 600), (720, 1280), (640, 360)]
@@ -76,6 +76,16 @@ def test_a_cursor_measures_exactly_what_it_draws():
         cursor.beside([lambda column: column.pair(LONG, "1"), lambda column: column.aside("short")], (2, 1), 60)
         ends.append(cursor.y)
     assert ends[0] == ends[1] > 300
+
+
+@pytest.mark.parametrize("width", [400.0, 60.0])
+def test_words_beside_a_figure_are_written_once_however_narrow_the_column(
+    width: float, monkeypatch: pytest.MonkeyPatch
+):
+    written = words_written(monkeypatch)
+    canvas = Canvas(pygame.Surface(VIEW_SIZE)).reading
+    Cursor(40, 40, width, canvas.scale, canvas).pair("label", "1234567 m/s")
+    assert written == ["label", "1234567 m/s"]
 
 
 def test_nothing_leaves_its_column_not_even_a_word_without_a_space():

@@ -10,7 +10,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.ui.context import Context
-from game.ui.form import DOWN, LEFT, RIGHT, UP, Form, neighbour
+from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.listing import shortened
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
@@ -118,8 +118,8 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
 
 def test_a_slider_stops_at_its_ticks_as_well_as_at_each_step(context: Context, open_game: Callable[..., Driver]):
     open_game(Page)
-    form, ticks = Form(context), {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
-    slider = SliderRow(form.manager, "", 0.0, (0.0, 1.0), lambda _: None, step=0.1, figure=str, ticks=ticks)
+    ticks = {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
+    slider = SliderRow("", 0.0, (0.0, 1.0), lambda _: None, step=0.1, figure=str, ticks=ticks)
     up, down = [0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.64, 0.7], [0.64, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.04, 0.0]
     for direction, stops in ((1, up), (-1, down)):
         for stop in stops:
@@ -221,9 +221,8 @@ def test_a_choice_of_too_many_shows_the_chosen_one_and_opens_a_list():
     opened: list[bool] = []
     manager = PointsManager()
     names = [f"network {number}" for number in range(30)]
-    choice = ChoiceRow(
-        manager, "Flown by", names, 0, lambda _: None, on_open=lambda: opened.append(True), all_word="all 30"
-    )
+    choice = ChoiceRow("Flown by", names, 0, lambda _: None, on_open=lambda: opened.append(True), all_word="all 30")
+    choice.join(manager)
     for width, shown in ((400.0, {0, -1}), (4000.0, set(range(30)))):
         choice.lay(Cursor(64.0, 250.0, width))
         assert choice._places.keys() == shown
