@@ -10,8 +10,9 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from ai.digits.augmentation import Strength, augment
-from ai.digits.classifier import DIGITS, DigitClassifier, Image
+from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
+from ai.digits.preprocessing import Image
 from ai.digits.training import accuracy
 from ai.nn import Adam, Array
 

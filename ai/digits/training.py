@@ -266,10 +266,10 @@ def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> flo
     return float((classifier.predict(images).argmax(axis=1) == labels).mean())
 
 
-def confusion(classifier: DigitClassifier, images: Images, labels: Labels) -> npt.NDArray[np.intp]:
-    """Return how often each digit (row) was read as which (column), (10, 10)."""
-    table = np.zeros((10, 10), np.intp)
-    np.add.at(table, (labels, classifier.predict(images).argmax(axis=1)), 1)
+def confusion(labels: npt.NDArray[Any], read: npt.NDArray[np.intp]) -> npt.NDArray[np.int64]:
+    """Return how often each digit (row) was read as which (column), (10, 10), by labels and answers (n,)."""
+    table = np.zeros((10, 10), np.int64)
+    np.add.at(table, (labels, read), 1)
     return table
 
 

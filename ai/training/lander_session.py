@@ -198,9 +198,9 @@ class LanderSession(Session[Training]):
         """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
         self.messages.append(self._explanations.explain(slot, decisions))
 
-    def _edit(self, edit: Edit, amends: bool = False) -> None:
-        """Edit the network; `amends` says that the weight of the last edit is still being dragged."""
-        self._edited(lambda editor: editor.apply(edit, amends=amends))
+    def _edit(self, edit: Edit) -> None:
+        """Edit the network."""
+        self._edited(lambda editor: editor.apply(edit))
 
     def _undo(self, every: bool = False) -> None:
         """Undo the last edit, or every one since the network was as it had learnt."""

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.digits.classifier import DigitClassifier, load_part
+from ai.digits.classifier import DigitClassifier
+from ai.digits.mnist import load_part
 from game.core.assets import MODELS_DIR
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.reader import Reader
