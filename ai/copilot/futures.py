@@ -9,19 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, NamedTuple, Protocol, TypeVar
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
-from ai.environment import Bools, Doubles, Ints
+from ai.environment import Bools, Doubles, Ints, T, finished
 from ai.lander.environment import LanderEnv, LanderParams, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES, nearest_action
 from engine import DT
-
-T = TypeVar("T")
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
 LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
@@ -177,16 +175,6 @@ class FlownAhead(Protocol):
 
 
 Flying = Generator[None, None, T]  # yields after each decision, and returns what comes of it
-
-
-def finished(flying: Flying[T]) -> T:
-    """Fly to the end; return what comes of it."""
-    while True:
-        try:
-            next(flying)
-        except StopIteration as end:
-            found: T = end.value
-            return found
 
 
 class Lookahead:

@@ -13,7 +13,7 @@ from typing import Any, Final, Generic, Self, TypeVar
 import numpy as np
 
 from ai.agent.symmetry import Symmetry
-from ai.environment import Doubles, Env, Ints
+from ai.environment import Doubles, Env, Ints, T, finished
 from ai.files import MOST, array_like, read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
@@ -42,7 +42,6 @@ _CONTACTS: Final[dict[str, tuple[Any, ...]]] = {
 }  # fmt: skip
 
 S = TypeVar("S", bound="Score")
-T = TypeVar("T")
 Trial = Generator[None, None, T]  # takes one decision a turn, and returns what came of them
 
 
@@ -163,15 +162,6 @@ class Evaluation(Score):
         return f"{self.figure} of {self.episodes} validation flights landed{took}"
 
 
-def finished(trial: Trial[T]) -> T:
-    """Take a trial to its end, and return what came of it."""
-    while True:
-        try:
-            next(trial)
-        except StopIteration as done:
-            return done.value  # type: ignore[no-any-return]
-
-
 def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[Doubles]:
     """Fly all slots of `env`, which has just been reset, to the end; return the sums of the slots `measured`.
 
@@ -197,9 +187,9 @@ def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[
     return np.array([*counts, *sums], dtype=float)
 
 
-def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random") -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
-    env = LanderEnv(episodes, seed, spawn, frame_skip)
+    env = LanderEnv(episodes, seed, spawn)
     env.reset()
     return Evaluation.of(finished(flown(pilot, env)))
 

@@ -15,7 +15,7 @@ import pytest
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
-from ai.training.demonstrations import demonstrate, write
+from ai.training.demonstrations import write
 from ai.training.history import History
 from ai.training.lander_session import TAUGHT
 from ai.training.loop import Training
@@ -33,6 +33,7 @@ from game.ui.entry import EntryRow
 from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.rows import ChoiceRow
 from game.ui.widget import Widget
+from tests.support.demonstrated import demonstrate
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
