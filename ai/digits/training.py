@@ -214,9 +214,9 @@ class DigitTraining(Run):
 
         A `final` one is measured on MNIST's test images; raises MnistError if there are none.
         """
-        best, presets = self.best_classifier(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}
+        best = self.best_classifier()
         described = {
-            **nearest_preset(self.config.to_json(), presets), "seed": self.seed, "step": self.step,
+            **nearest_preset(self.config, DIGIT_PRESETS), "seed": self.seed, "step": self.step,
             "epochs": self.step // self.steps_per_epoch, "seconds": round(self.seconds, 3), "held_out": self.best,
             "kept_epoch": self.best_epoch, "history": [*self.history],
         }  # fmt: skip

@@ -245,9 +245,8 @@ class Training(Run):
         if final and self.evaluated != self.agent.decisions:
             self.evaluate()
         agent, config = self.agent, self.config
-        presets = {name: preset.to_json() for name, preset in presets_of(config.env).items()}
         described = {
-            "env": config.env, **nearest_preset(config.to_json(), presets), "seed": self.seed,
+            "env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed,
             "decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes,
             "landings": self.env.landings, "seconds": round(self.seconds, 3),
             "best": self.best.to_json() if self.best else None,

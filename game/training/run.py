@@ -68,7 +68,7 @@ class TrainingRun:
         self.kind, self.collection, self._keeps = kind, collection, keeps
         self.name, self.runs, self.pace = "", 0, len(PACES) - 1
         self._worker: Worker | None = None
-        self._launch: Callable[[], str] | None = None  # starts the waiting run; returns a note for the player
+        self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
         self.pay: Path | None = None
         self.pays: tuple[Path, ...] = ()
@@ -103,7 +103,7 @@ class TrainingRun:
     @property
     def waiting(self) -> bool:
         """Whether a run waits for the previous one to end."""
-        return self._launch is not None
+        return self._next is not None
 
     @property
     def state(self) -> WorkerState | None:
@@ -160,9 +160,17 @@ class TrainingRun:
         self._named = resume is not None and resume != self.collection.unsaved
         self.name = resume.name if resume else ""
         self.call(name)
-        return self._start(lambda: self._begin(config, seed, resume))
+        self._next = config, seed, resume
+        self._orders.clear()
+        if self._worker:
+            self._worker.stop()
+        return self._start_waiting()
 
-    def _begin(self, config: Any, seed: int, resume: Path | None) -> str:
+    def _start_waiting(self) -> str:
+        """Start the waiting run, if the previous process has ended; return a note."""
+        if self._next is None or (self._worker and not self._worker.gone):
+            return ""
+        (config, seed, resume), self._next = self._next, None
         keep, notes = self.collection.unsaved if self._keeps else None, self._name_ended()
         try:
             if resume is not None:
@@ -177,24 +185,9 @@ class TrainingRun:
         self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
-        return " ".join(notes)
-
-    def _start(self, launch: Callable[[], str]) -> str:
-        self._launch = launch
-        self._orders.clear()
-        if self._worker:
-            self._worker.stop()
-        return self._start_waiting()
-
-    def _start_waiting(self) -> str:
-        """Start the waiting run, if the previous process has ended; return a note."""
-        if self._launch is None or (self._worker and not self._worker.gone):
-            return ""
-        launch, self._launch = self._launch, None
-        note = launch()
         while self._orders:
             self._order(self._orders.pop(0))
-        return note
+        return " ".join(notes)
 
     def call(self, settings: str) -> None:
         """Name the run after its settings, with a number, unless it was saved under a name."""
@@ -204,7 +197,7 @@ class TrainingRun:
     def stop(self) -> None:
         """End the run, save its network and measure it. A second call ends it without that."""
         if self.waiting:
-            self._launch = None
+            self._next = None
         elif self.alive and self.steps and not self.stopping:
             self.stopping = True
             self.ask("finish")
@@ -239,7 +232,7 @@ class TrainingRun:
 
     def close(self) -> None:
         """End the runs and their processes for certain."""
-        self._launch = None
+        self._next = None
         if self._leaving is not None:
             self._leaving.close(self.kind.grace)
             self._take_place()

@@ -195,13 +195,7 @@ class RunKind:
     def nearest(self, config: Configuration) -> Named:
         """Return the preset, or sabotage of one, that differs in the fewest fields; of equals, the preset."""
         every: list[Named] = [(base, sabotage) for sabotage in ("", *self.sabotages) for base in self.presets]
-        given = config.to_json()
-
-        def distance(named: Named) -> int:
-            other = self.config_of(named).to_json()
-            return sum(given[name] != other[name] for name in given)
-
-        return min(every, key=distance)
+        return min(every, key=lambda named: len(config.differences(self.config_of(named))))
 
     def said(self, named: Named) -> tuple[str, str]:
         """Return the label of a preset or a sabotage, and a sentence about it."""

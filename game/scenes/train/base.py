@@ -93,7 +93,6 @@ class TrainingScene(FormScene, ABC):
         try:
             self.left = run.collection.claim()
             self._build()
-            self._show_opened()
             self._lay()
             self.form.focus(self.start_button)
             self.lay_out()
@@ -166,10 +165,6 @@ class TrainingScene(FormScene, ABC):
         """Open a part, or close it; it stays so for this player."""
         self._settings.open(name)
         self.context.apply_settings()
-        self._show_opened()
-
-    def _show_opened(self) -> None:
-        self.knobs.every = self.opened(KNOBS)
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
@@ -184,6 +179,7 @@ class TrainingScene(FormScene, ABC):
         form, before, focused = self.form, list(self.form.widgets), self.form.focused
         scrolled = self.panel.scrolled if self._laid is not None else 0.0
         body, foot = Part(form), Part(form)
+        self.knobs.every = self.opened(KNOBS)
         self.panel, self._foot = Panel(body), Panel(foot)
         pointers = self._pointers()
         self._describe(self.panel)

@@ -14,8 +14,6 @@ from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
 from game.core.scene import Transition, push
-from game.digits.filter_film import FilterFilm
-from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
@@ -23,6 +21,7 @@ from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import TrainingScene, TrainingStatus
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
+from game.scenes.train.digit_views import ConfusionMatrix, FilterFilm
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout
 from game.training.digit_models import DigitModels, runs_dir

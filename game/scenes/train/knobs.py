@@ -95,7 +95,7 @@ class KnobsPanel:
     def key(self) -> Hashable:
         """What decides which rows there are."""
         settings = self.settings
-        return self.every, self._page, self.first, settings.holds, settings.changed, self._asks, bool(settings.waiting)
+        return self._page, self.first, settings.holds, settings.changed, self._asks, bool(settings.waiting)
 
     @property
     def _asks(self) -> bool:

@@ -36,7 +36,7 @@ from game.scenes.train.rewind import Rewind
 from game.scenes.train.split_view import SplitView
 from game.training.library import Library
 from game.training.record import take_away
-from game.training.run import PACES, TrainingRun
+from game.training.run import TrainingRun
 from game.training.run_kind import LANDERS
 from game.ui.charts import Scrubber
 from game.ui.context import Context
@@ -75,16 +75,15 @@ class TrainScene(TrainingScene):
         self.charts, self.captions = TrainingCharts(), ChartCaptions()
         self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
-        self.split_view, self.inside, self.rewind = SplitView(run), Inside(run), Rewind(run)
+        self.split_view, self.inside, self.rewind = (
+            SplitView(run),
+            Inside(run, partial(self.opened, INSIDE)),
+            Rewind(run),
+        )
         self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
-        self._pace, self._frame = len(PACES) - 1, 0
+        self._frame = 0
         self._news = False  # of the network, on which there is no advice yet
-        self._legend: list[RunRow] = []
-
-    def _show_opened(self) -> None:
-        super()._show_opened()
-        self.inside.opened = self.opened(INSIDE)
 
     # Rows
 
@@ -154,7 +153,6 @@ class TrainScene(TrainingScene):
             self.rewind.go_to(self.charts.decisions_at(place))
 
     def _describe(self, column: Column) -> None:
-        self._legend = []
         self.rewind.describe(column, self.form.manager, timeline=self.inside.opened)
         if self.inside.opened:
             self.inside.describe(column)
@@ -186,7 +184,7 @@ class TrainScene(TrainingScene):
             (texts.TRAIN_STEP, self.run.step),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
-        column.choice("", texts.TRAIN_PACES, self._pace, self._set_pace)
+        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace)
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one, and by what they are measured."""
@@ -196,7 +194,7 @@ class TrainScene(TrainingScene):
         column.line()
         for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
             press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
-            self._legend.append(column.widget(RunRow(self.form.manager, name, style, press)))
+            column.widget(RunRow(self.form.manager, name, style, press))
         if not self.run.twin:
             column.aside(texts.COMPARE_REMOVE)
         column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)
@@ -210,10 +208,6 @@ class TrainScene(TrainingScene):
         if self._advice.shown:
             self._advice.describe(column)
         return self._advice.shown
-
-    def _set_pace(self, pace: int) -> None:
-        self._pace = pace
-        self.run.set_pace(pace)
 
     # Events and time
 
