@@ -19,11 +19,11 @@ from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
-from game.scenes.train.base import TrainingScene, TrainingStatus
+from game.scenes.train.base import Pointer, TrainingScene
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
 from game.scenes.train.digit_views import ConfusionMatrix, FilterFilm
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.layout import Layout
+from game.scenes.train.layout import Layout, TrainingStatus
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
@@ -31,7 +31,6 @@ from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import Widget
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -118,29 +117,26 @@ class DigitTrainingScene(TrainingScene):
         """Whether something was read already, and there is room to read what."""
         return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
-    def _pointers(self) -> list[Widget]:
-        manager, nowhere = self.form.manager, (0, 0, 1, 1)
-        self._over_charts: list[Widget] = [VirtualPointer(manager, nowhere, self.charts.follow)]
+    def _pointers(self) -> list[Pointer]:
+        manager, nowhere, charts = self.form.manager, (0, 0, 1, 1), self.charts
+        pointers: list[Pointer] = [(VirtualPointer(manager, nowhere, charts.follow), lambda: charts.box)]
         if self.view:
-            self._over_charts.append(
-                Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
-            )
+            scrubber = Scrubber(manager, charts, self.film.choose, lambda: None, charts.zoom_by)
+            pointers.append((scrubber, lambda: charts.box))
         elif self._shows_misread:
-            if self.matrix not in self.form.widgets:
+            if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone
                 before, self.matrix = self.matrix, ConfusionMatrix(manager, self.matrix.box)
                 self.matrix.set(before.confusion)
                 self.matrix.cell = before.cell
-            return [*self._over_charts, self.matrix]
-        return self._over_charts
+            pointers.append((self.matrix, lambda: self._matrix))
+        return pointers
 
     def _place(self, place: Layout) -> None:
-        for widget in self._over_charts:
-            widget.relative_rect = widget.rect = pygame.Rect(self.charts.box)
         area = place.swarm
         self._area = pygame.FRect(_LEFT, area.top + _HEAD, area.width - 2 * _LEFT, max(area.height - _HEAD - 8, 60))
         side = min(self._area.height - _NUMBERS, _LARGEST, self._area.width - _NUMBERS)
         matrix = pygame.Rect(round(_LEFT + _NUMBERS), round(self._area.top + _NUMBERS), round(side), round(side))
-        self.matrix.rect = self.matrix.relative_rect = matrix
+        self.matrix.rect = self.matrix.relative_rect = self._matrix = matrix
         self._cell = pygame.FRect(matrix.right + 36, matrix.top, self._area.right - matrix.right - 36, side)
 
     def _describe_more(self, column: Column) -> None:

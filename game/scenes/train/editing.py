@@ -20,6 +20,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import HUMAN, NIGHT0, SMALL
 from game.explain.network_view import NetworkView
+from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 
@@ -56,13 +57,11 @@ class NetworkEditing:
 
     Attributes:
         picked: the unit or link that was chosen.
-        past: whether an earlier moment is shown, which cannot be edited.
 
     """
 
-    def __init__(self, view: NetworkView, run: TrainingRun) -> None:
-        self._view, self._run = view, run
-        self.past = False
+    def __init__(self, view: NetworkView, run: TrainingRun, rewind: Rewind) -> None:
+        self._view, self._run, self._rewind = view, run, rewind
         self.clear()
 
     def clear(self) -> None:
@@ -78,8 +77,8 @@ class NetworkEditing:
 
     @property
     def enabled(self) -> bool:
-        """Whether the network can be edited now."""
-        return self._run.alive and not self.past and self._network is not None
+        """Whether the network can be edited now: one of an earlier moment cannot."""
+        return self._run.alive and self._rewind.moment is None and self._network is not None
 
     @property
     def _weight(self) -> float | None:
@@ -129,7 +128,8 @@ class NetworkEditing:
     def key(self) -> Hashable:
         """What decides which rows there are."""
         edits = self._run.edits
-        return self.enabled, self.past, self.picked, self._silent, edits.steps > 0, edits.holds, edits.way_back
+        changed = edits.steps > 0, edits.holds, edits.way_back
+        return self.enabled, self._rewind.moment is None, self.picked, self._silent, changed
 
     def describe(self, column: Column, *, opened: bool) -> None:
         """Add what is picked, and what can be done to it; where the network is not seen, what was edited alone."""
@@ -160,7 +160,7 @@ class NetworkEditing:
     @property
     def _sentence(self) -> str:
         """What is said of what is picked."""
-        if self.past:
+        if self._rewind.moment is not None:
             return texts.EDIT_PAST
         if self.picked is None:
             return texts.EDIT_HINT

@@ -22,6 +22,7 @@ from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
 from game.explain.tables import Line, table
 from game.scenes.train.editing import NetworkEditing
+from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 
@@ -40,10 +41,10 @@ class Inside:
 
     """
 
-    def __init__(self, run: TrainingRun, is_open: Callable[[], bool]) -> None:
+    def __init__(self, run: TrainingRun, rewind: Rewind, is_open: Callable[[], bool]) -> None:
         self._run, self._is_open = run, is_open
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self.editing = NetworkEditing(self.view, run)
+        self.editing = NetworkEditing(self.view, run, rewind)
         self.clear()
 
     def clear(self) -> None:

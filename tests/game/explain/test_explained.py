@@ -150,7 +150,8 @@ def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_paus
 
 def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
     canvas = Canvas(pygame.Surface((1280, 720)))
-    charts = TrainingCharts(more=True)
+    charts = TrainingCharts()
+    charts.show(more=True)
     charts.place([pygame.FRect(40, 100 + 150 * row, 360, 112) for row in range(4)])
     charts.draw(canvas)
     explained = [area.what for area in canvas.explained]

@@ -55,7 +55,7 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     start(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
-    assert len(scene.swarm.swarm_state.outcome) == 4
+    assert len(scene.landers.now.swarm_state.outcome) == 4
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(20)
