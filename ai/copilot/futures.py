@@ -230,8 +230,8 @@ class Lookahead:
         pads = [_pads_of(moment, row) for row in range(len(moment))]
         plans: list[Plan | None] = [None] * len(asked)
         for tried in slice(1), slice(1, None):  # most land where they were meant to; the other pads are for the rest
-            left = [(index, pad) for index, (row, _) in enumerate(asked) if plans[index] is None
-                    for pad in pads[row][tried]]  # fmt: skip
+            rows = [(index, row) for index, (row, _) in enumerate(asked) if plans[index] is None]
+            left = [(index, pad) for index, row in rows for pad in pads[row][tried]]
             for first in range(0, len(left), _BATCH):
                 batch = left[first : first + _BATCH]
                 found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in batch])
@@ -294,11 +294,11 @@ class Lookahead:
                 masks[:, : len(left)] = flies[left], waits[left], down[left]
                 env, future = self._begin(Moment.of(env).take(left), future[left])
                 flies, waits, down = masks
-        return [
-            (Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
-                  shares[:end, row].copy(), states[: end + 1, row].copy()), bool(landed[row]))
-            for row, end in enumerate(flown.tolist())
-        ]  # fmt: skip
+        found = []
+        for row, end in enumerate(flown.tolist()):
+            way = actions[:end, row].copy(), shares[:end, row].copy(), states[: end + 1, row].copy()
+            found.append((Plan(int(start.steps[row]), start.fall(row), asked[row][2], *way), bool(landed[row])))
+        return found
 
     def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:
         """Return the network's actions (n,), and their shares of thrust, (n, 2)."""

@@ -20,8 +20,7 @@ from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
 from ai.training.statistics import wilson
 
-SOME: Final = ("slow", "holds right", "a key each second", "thrust 0.3",
-               "adversary, random")  # fmt: skip
+SOME: Final = "slow", "holds right", "a key each second", "thrust 0.3", "adversary, random"
 ALONE: Final = "alone"
 VALUES: Final = "guardian by values"  # without futures
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
@@ -110,11 +109,10 @@ def _measure(
     found = []
     for number, name in enumerate(names):
         mine = slice(number * episodes, (number + 1) * episodes)
-        _, success, crash, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
+        ended = [float((env.outcome[mine] == outcome).mean()) for outcome in Outcome][1:]
         changed = float(overridden[mine].sum() / decisions[mine].sum())
         on_own, planned, lost = (float(each[mine].mean()) for each in (own, held, held & ~landed))
-        found.append(AssistedFlights(name, str(mode), assist, episodes, success, crash, gone, late, changed, on_own,
-                                     planned, lost))  # fmt: skip
+        found.append(AssistedFlights(name, str(mode), assist, episodes, *ended, changed, on_own, planned, lost))
     return found
 
 

@@ -151,8 +151,8 @@ def _twin(before: Before, cell: Transition, row: int, agent: DeepQAgent) -> Deep
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
     config = before.config.changed(gradient_steps=1, success_pass=False, batch_size=len(before.weights))
-    twin = DeepQAgent(agent.num_features, agent.num_actions, config, np.random.default_rng(0),
-                      symmetry=agent.symmetry, replay=_HandedBatch(cells, before.weights))  # fmt: skip
+    sizes, replay = (agent.num_features, agent.num_actions), _HandedBatch(cells, before.weights)
+    twin = DeepQAgent(*sizes, config, np.random.default_rng(0), symmetry=agent.symmetry, replay=replay)
     twin.online.values, twin.target.values = before.online, before.target
     twin.optimizer.load_state(before.optimizer, before.online)
     if before.normalizer is not None and twin.normalizer is not None:

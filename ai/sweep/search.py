@@ -75,9 +75,8 @@ class Proposals(Search):
         """Begin a trial, with these settings or such as Optuna proposes."""
         space = self._study.plan.space
         if params is not None:
-            self._optuna.enqueue_trial({
-                name: json.dumps(value) if space[name].choices else value for name, value in params.items()
-            })  # fmt: skip
+            given = {name: json.dumps(each) if space[name].choices else each for name, each in params.items()}
+            self._optuna.enqueue_trial(given)
         trial = self._trials[number] = self._optuna.ask(self._distributions)
         drawn = {name: json.loads(each) if space[name].choices else each for name, each in trial.params.items()}
         return Asked(number, drawn)

@@ -100,11 +100,11 @@ def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     mine, n_step = slice(slot, slot + 1), NStep(len(decided), config.discount)
     for each in decided:
         result = each.result
-        reward = result.reward[mine] * np.float32(config.reward_scale)
+        reward = result.reward * np.float32(config.reward_scale)
+        came = each.observation, each.actions, reward, result.observation, result.terminated, result.ended
         # Only what the last decision sums up is shown.
         with Recorder([NStep.add] if each is decided[-1] else ()) as recorder:
-            cells, _ = n_step.add(each.observation[mine], each.actions[mine], reward, result.observation[mine],
-                                  result.terminated[mine], result.ended[mine])  # fmt: skip
+            cells, _ = n_step.add(*(part[mine] for part in came))
     results = [each.result for each in decided]
     flown = Flown(
         slot,

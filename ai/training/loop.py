@@ -111,10 +111,8 @@ class Training(Run):
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
         task = self.task
-        return DeepQAgent(
-            task.num_features, task.num_actions, config, rng,
-            symmetry=task.symmetry, action_chances=task.action_chances, **parts,
-        )  # fmt: skip
+        parts |= {"symmetry": task.symmetry, "action_chances": task.action_chances}
+        return DeepQAgent(task.num_features, task.num_actions, config, rng, **parts)
 
     @property
     def config(self) -> Config:
@@ -245,12 +243,10 @@ class Training(Run):
         if final and self.evaluated != self.agent.decisions:
             self.evaluate()
         agent, config = self.agent, self.config
-        described = {
-            "env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed,
-            "decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes,
-            "landings": self.env.landings, "seconds": round(self.seconds, 3),
-            "best": self.best.to_json() if self.best else None,
-        }  # fmt: skip
+        described = {"env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed}
+        described |= {"decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes}
+        described |= {"landings": self.env.landings, "seconds": round(self.seconds, 3)}
+        described["best"] = self.best.to_json() if self.best else None
         best, last = self.best_agent(), self.last_agent()
 
         def write(folder: Path) -> None:
@@ -325,10 +321,8 @@ class Training(Run):
                 raise ValueError("actions are none of the environment's")
             self.statistics.load_state(state["statistics"])
         load_agent_state(agent, state["agent"], env.num_envs)
-        whole = [
-            restore_buffer(folder, getattr(agent, name), saved, self.task.num_actions)
-            for name, saved in state["buffers"].items() if name in ("replay", "successes")
-        ]  # fmt: skip
+        buffers = [each for each in state["buffers"].items() if each[0] in ("replay", "successes")]
+        whole = [restore_buffer(folder, getattr(agent, name), each, self.task.num_actions) for name, each in buffers]
         self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
         self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
         self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])

@@ -137,10 +137,9 @@ class Evaluation(Score):
         counts, (returns, landing_seconds, landing_fuel, switches, seconds) = sums[: len(Outcome)], sums[-5:].tolist()
         episodes, landed = int(counts.sum()), int(counts[Outcome.LANDED])
         success, crash, out_of_bounds, time_out = (counts[Outcome.LANDED :] / episodes).tolist()
-        return cls(
-            episodes, success, crash, out_of_bounds, time_out, returns / episodes,
-            landing_seconds / landed if landed else None, landing_fuel / landed if landed else None, switches / seconds,
-        )  # fmt: skip
+        took, burnt = (each / landed if landed else None for each in (landing_seconds, landing_fuel))
+        shares = success, crash, out_of_bounds, time_out
+        return cls(episodes, *shares, returns / episodes, took, burnt, switches / seconds)
 
     def better_than(self, other: Evaluation | None) -> bool:
         """Whether more flights landed, random and hard starts together, or as many and the mean return is higher.

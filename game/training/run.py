@@ -170,7 +170,13 @@ class TrainingRun:
         """Start the waiting run, if the previous process has ended; return a note."""
         if self._next is None or (self._worker and not self._worker.gone):
             return ""
-        (config, seed, resume), self._next = self._next, None
+        begun, self._next = self._next, None
+        note = self._launch(*begun)
+        while self._orders:
+            self._order(self._orders.pop(0))
+        return note
+
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
         keep, notes = self.collection.unsaved if self._keeps else None, self._name_ended()
         try:
             if resume is not None:
@@ -179,14 +185,11 @@ class TrainingRun:
                 self.collection.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        pay: dict[str, Any] = {"pay": self.pay} if self.pay and resume is None else {}
-        if resume is not None and self.pays:
-            pay = {"pays": self.pays}
+        pay: dict[str, Any] = {"pays": self.pays} if resume else {"pay": self.pay}
+        pay = {name: each for name, each in pay.items() if each}  # runs of digits are never paid
         self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
-        while self._orders:
-            self._order(self._orders.pop(0))
         return " ".join(notes)
 
     def call(self, settings: str) -> None:

@@ -209,8 +209,8 @@ class TrainingCharts(Charts):
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
-        contents = (len(history), len(history.validations), shown, self.axis, self.zoom.shown,
-                len(history.setting_changes))  # fmt: skip
+        counts = len(history), len(history.validations), len(history.setting_changes)
+        contents = counts, shown, self.axis, self.zoom.shown
         if self._contents[number] == contents:
             return False
         self._contents[number] = contents
@@ -284,8 +284,8 @@ class TrainingCharts(Charts):
             y = box.bottom + _DROP
             lines = chart.painted_caption.split("\n")
             for line in lines if box.width >= _WIDE else lines[:1]:
-                y = draw_wrapped(canvas, line, (box.x, y), box.width - 8, size=_SIZE, colour=MUTE, leading=_LEADING,
-                                 most=2)  # fmt: skip
+                place, room = (box.x, y), box.width - 8
+                y = draw_wrapped(canvas, line, place, room, size=_SIZE, colour=MUTE, leading=_LEADING, most=2)
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)

@@ -87,10 +87,9 @@ class DigitTrainingScene(TrainingScene):
         history, scores = run.history, run.history.validations
         line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
         if len(history):
-            line = texts.DIGIT_RUN_FIGURES.format(
-                epoch=history["epoch"][-1], epochs=run.config.epochs, seconds=history["seconds"][-1],
-                rate=history["images_per_second"][-1],
-            )  # fmt: skip
+            epoch, seconds, rate = (history[name][-1] for name in ("epoch", "seconds", "images_per_second"))
+            figures = {"epoch": epoch, "epochs": run.config.epochs, "seconds": seconds, "rate": rate}
+            line = texts.DIGIT_RUN_FIGURES.format(**figures)
         part, words = scores[-1].success if scores else None, texts.DIGIT_RUN_READ
         if run.test is not None:
             if run.kept_epoch is not None:

@@ -127,10 +127,11 @@ class NetworksScene(PanelScene):
         panel.gap(4)
         left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
         left.add(partial(write_headings, texts.RUNS_COLUMNS, _CELLS))
+        rows = [row(run, own=not self._is_shipped(run)) for run in self.items]
+        index = self.items.index(self.chosen) if self.chosen else 0
         self._list = left.listing(
-            [row(run, own=not self._is_shipped(run)) for run in self.items], lambda _: self._press_row(),
-            texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH, on_choose=self._choose_row,
-            index=self.items.index(self.chosen) if self.chosen else 0,
+            rows, lambda _: self._press_row(), texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH,
+            on_choose=self._choose_row, index=index,
         )  # fmt: skip
         more: list[tuple[str, OnPress]] = []
         if deleted := self._library.last_deleted:
@@ -179,8 +180,8 @@ class NetworksScene(PanelScene):
         if run.resumable and not self._choose:
             verbs.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
         if self._is_own:
-            verbs += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export),
-                      (texts.RUN_DELETE, self._delete)]  # fmt: skip
+            verbs += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export)]
+            verbs.append((texts.RUN_DELETE, self._delete))
         return verbs
 
     def _choose_row(self, number: int) -> None:

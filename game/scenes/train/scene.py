@@ -84,18 +84,17 @@ class TrainScene(TrainingScene):
     def _key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
-        return (self.laboratory.page, self.run.twin is None, self.rewind.moment is None, self._advice.key, earlier, opened,
-                self.inside.editing.key)  # fmt: skip
+        now, editing = self.rewind.moment is None, self.inside.editing.key
+        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened, editing
 
     @property
     def _status(self) -> TrainingStatus:
         run, row, title, landed = self.run, self.rewind.row, texts.TRAIN_TITLE, texts.TRAIN_LANDED
         if run.swarm_state is None or not len(run.history):
             return TrainingStatus(title, texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE, "", landed)
-        line = texts.TRAIN_FIGURES.format(
-            landers=len(run.swarm_state.outcome), seconds=run.history["seconds"][row],
-            count=int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment,
-        )  # fmt: skip
+        landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
+        count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
+        line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
         share = run.history["success"][row]
         figure = "" if np.isnan(share) else f"{100 * share:.0f}"
         painted = "".join(self.charts.landed[:1])

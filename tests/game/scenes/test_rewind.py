@@ -232,14 +232,14 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     driver.frames(14)
     driver.top.rewind.go_to(10.0)
     driver.frames(14)
-    assert driver.top.moment == 300
+    assert driver.top.rewind.moment == 300
     assert driver.top.rewind.swarm_state is None
     assert driver.top.inside.network is None or driver.top.inside.shown is None
     driver.top.open(INSIDE)
     driver.frames(3)
     driver.form.focus(timeline(driver))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
-    assert driver.top.moment is None
+    assert driver.top.rewind.moment is None
     assert isinstance(driver.top, TrainScene)
 
 

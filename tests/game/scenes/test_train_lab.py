@@ -358,9 +358,9 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     train.frames(2)
     scene.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
-    assert scene.moment == run.swarms.moments[0]
+    assert scene.rewind.moment == run.swarms.moments[0]
     shown = [swarm.swarm_state.decisions for swarm in scene.landers.pair]
-    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.moment).decisions]
+    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.rewind.moment).decisions]
     assert shown[1] < run.twin.swarm_state.decisions
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
