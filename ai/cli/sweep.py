@@ -31,7 +31,7 @@ def add_commands(commands: Any) -> None:
     add("--resume", action="store_true", help="go on with a study; --trials may ask for more")
     add("--trials", type=int, metavar="N", help="trials in all (default: 64)")
     add("--seeds", type=int, metavar="N", help="runs of each trial, seeds 0 to N-1 (default: 3)")
-    add("--metric", metavar="NAME", help="what trials are compared by: time_to_99, success, return, mean, accuracy")
+    add("--metric", metavar="NAME", help="compare trials by time_to_99 (any share), success, return, mean or accuracy")
     add("--knobs", metavar="NAMES", help="knobs or groups to search, with commas between (default: learning, a group)")
     add("--space", type=Path, metavar="FILE", help="knobs to search, with ranges, as JSON")
     add("--search", choices=("tpe", "random", "population"), help="how settings are proposed (default: tpe, by Optuna)")

@@ -109,10 +109,11 @@ def _measure(
     found = []
     for number, name in enumerate(names):
         mine = slice(number * episodes, (number + 1) * episodes)
-        ended = [float((env.outcome[mine] == outcome).mean()) for outcome in Outcome][1:]
+        _, success, crash, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
         changed = float(overridden[mine].sum() / decisions[mine].sum())
         on_own, planned, lost = (float(each[mine].mean()) for each in (own, held, held & ~landed))
-        found.append(AssistedFlights(name, str(mode), assist, episodes, *ended, changed, on_own, planned, lost))
+        came = success, crash, gone, late, changed, on_own, planned, lost
+        found.append(AssistedFlights(name, str(mode), assist, episodes, *came))
     return found
 
 

@@ -234,7 +234,8 @@ class DigitTraining(Run):
     def state(self) -> dict[str, Any]:
         """Return copies of what it goes on from; each step has its own randomness."""
         best_values = None if self.best_values is None else self.best_values.copy()
-        state = {"step": self.step, "seconds": self.seconds, "best": self.best, "best_values": best_values}
+        state: dict[str, Any] = {"step": self.step, "seconds": self.seconds, "best": self.best}
+        state |= {"best_values": best_values}
         state |= {"history": [*self.history], "loss": self._loss, "accuracy": self._accuracy}
         state |= {"values": self.classifier.network.values.copy(), "average": self.average.copy()}
         return state | {"optimizer": self.optimizer.state()}

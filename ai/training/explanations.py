@@ -7,7 +7,7 @@ made from these only when one is asked for, by a copy of the agent.
 from __future__ import annotations
 
 from collections import deque
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -101,7 +101,7 @@ def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     for each in decided:
         result = each.result
         reward = result.reward * np.float32(config.reward_scale)
-        came = each.observation, each.actions, reward, result.observation, result.terminated, result.ended
+        came: Any = each.observation, each.actions, reward, result.observation, result.terminated, result.ended
         # Only what the last decision sums up is shown.
         with Recorder([NStep.add] if each is decided[-1] else ()) as recorder:
             cells, _ = n_step.add(*(part[mine] for part in came))

@@ -35,10 +35,10 @@ _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
     DigitLesson: "lesson", Confusion: "confusion", NetworkEdits: "edits",
 }  # fmt: skip
-_KEPT: Final = {
-    SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters",
-    **dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history"),
-}  # fmt: skip
+_ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
+_KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
+# What an experiment has reported that takes the place of the run.
+_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits", "in_force"
 _BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
 
 
@@ -377,8 +377,7 @@ class TrainingRun:
         self._leaving, self._worker = self._worker, twin._worker
         self._leaving.stop()
         self.runs, self._named = self.runs + 1, False
-        for name in ("history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits",
-                     "in_force"):  # fmt: skip
+        for name in _TAKEN:
             setattr(self, name, getattr(twin, name))
         self.lesson, self.begun = None, True
         twin._worker, self.twin, self.differing = None, None, ()

@@ -14,7 +14,7 @@ from ai.digits.preprocessing import Image
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits import certainty
-from game.digits.pictures import AMBER, picture
+from game.digits.pictures import AMBER, Numbers, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
@@ -23,7 +23,7 @@ from game.input.controls import Command
 from game.scenes.digits.answer import DigitBars, write_answer, write_legend
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.pad import DrawingPad, pen_row
-from game.scenes.digits.reader import LiveReading, Numbers, Reading, Verdict, best_two
+from game.scenes.digits.reader import LiveReading, Reading, Verdict, best_two
 from game.training.digit_models import NAMES, called
 from game.ui.actions import Action, Table, digit_actions
 from game.ui.context import Context
