@@ -1,15 +1,11 @@
-"""What the guardian promises, and what it costs.
+"""What the guardian promises, and how late a key is felt.
 
     python -m benchmarks.guardian [--flights 300] [--dials 0.04 0.27 1] [--into FILE]   hands of all families
-    python -m benchmarks.guardian --costs [--rounds 100]                   how long futures take
     python -m benchmarks.guardian --live [--flights 4]                     decisions of flights in real time
 
 With the dial at 0.04, 0.27 and 1, there must be a landing after 1, 4 and 12 decisions of an action. Starts are fresh:
 no network was trained with them. All hands fly from the same; "good" among them is the network alone. Flights are flown
 in rounds, all of some families at once, and noted in the file, so that they can be broken off.
-
-The costs are of moments of flights by random keys, with the network that comes with the game; processor time is that of
-this process alone, so that others lengthen it little.
 
 Live flights take as long as in the game, with futures from a process of their own, and a machine that does nothing
 else is needed for figures that say something. Of the decisions, those are *late* in which the plan was flown on only
@@ -25,7 +21,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 
 import argparse
 import json
-import platform
 import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -36,72 +31,23 @@ from typing import Any
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot import futures
 from ai.copilot.copilot import Mode
-from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Lookahead, Push
+from ai.copilot.futures import DECISION_STEPS, Future, Push
 from ai.copilot.guardian import decisions_of
 from ai.copilot.hands import HANDS
 from ai.copilot.measurement import ALONE, rows
 from ai.flights.recording import STEPS, Shares
-from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.moment import Moment
 from engine import DT
 from game.flight.flight import Flight
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
-BATCHES = (1, 6, 12, 18, 42)
 # Hands that are flown at once: futures of many take hardly longer.
 HOSTILE = "adversary, random", "adversary, least"
 KINDS = [name for name in HANDS if name not in HOSTILE], HOSTILE
 ROUND = 100  # flights of each family in a round: few at once cost several times as much each
 LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
-
-
-def moments(rounds: int) -> list[Moment]:
-    """Return moments of flights in which another random key is held each second."""
-    rng = np.random.default_rng(11)
-    env = LanderEnv(1, rng)
-    env.reset()
-    found = []
-    for _ in range(rounds):
-        found.append(Moment.of(env))
-        for action in rng.integers(6, size=2):
-            for _ in range(15):
-                env.fly(np.array([action]))
-        if env.outcome[0] != Outcome.FLYING:
-            env.reset()
-    return found
-
-
-def costs(agent: DeepQAgent, rounds: int) -> None:
-    """Print how long batches of futures take, in plain floats one after another, and in arrays."""
-    print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
-    print("| | median | 99% within | processor, median | 99% within |\n|---|---|---|---|---|")
-    found = moments(rounds)
-    usual = futures._size
-    for name, size_of, together in (
-        ("arrays alone", lambda count: max(2, usual(count)), True),
-        ("arrays, the last one in plain floats", usual, True),
-        ("plain floats, one after another", usual, False),
-    ):
-        futures._size = size_of
-        for size in BATCHES:
-            # One opening after another, so that as many different futures are flown as are asked for.
-            asked = [(0, (KEYS[number % 6],) * (1 + number // 6)) for number in range(size)]
-            batches = [asked] if together else [[each] for each in asked]
-            lookahead = Lookahead(agent)
-            took, worked = [], []
-            for moment in [found[0], *found]:
-                begun, busy = time.perf_counter(), time.process_time()
-                for batch in batches:
-                    lookahead.plans(moment, batch)
-                took.append(time.perf_counter() - begun)
-                worked.append(time.process_time() - busy)
-            figures = [1e3 * float(np.quantile(times[1:], share)) for times in (took, worked) for share in (0.5, 0.99)]
-            print(f"| {name}, {size} | " + " | ".join(f"{figure:.1f} ms" for figure in figures) + " |", flush=True)
-    futures._size = usual
 
 
 class Watched(FuturesProcess):
@@ -238,9 +184,7 @@ def table(done: list[dict[str, Any]], names: list[str]) -> None:
 def main() -> None:
     """Measure what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--costs", action="store_true", help="measure how long futures take")
     parser.add_argument("--live", action="store_true", help="fly in real time, with futures from another process")
-    parser.add_argument("--rounds", type=int, default=100, help="moments from which futures are flown")
     parser.add_argument(
         "--flights",
         type=int,
@@ -253,9 +197,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
     agent = DeepQAgent.load(MODEL)
-    if arguments.costs:
-        costs(agent, arguments.rounds)
-    elif arguments.live:
+    if arguments.live:
         live(agent, arguments.dials, min(4, arguments.flights), arguments.seed)
     else:
         promises(agent, arguments.hands, arguments.dials, arguments.flights, arguments.seed, arguments.into)
