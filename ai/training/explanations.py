@@ -78,10 +78,10 @@ class Explanations:
         if not self._training.agent.ready or not self._decided:
             raise ValueError("the network has not begun to learn: its replay buffer holds too few transitions")
         kept = self._moments if decisions is not None else []
-        moment = min(kept, key=lambda each: abs(each.before.decisions - (decisions or 0)), default=None)
+        moment = min(kept, key=lambda each: abs(each.before.agent.decisions - (decisions or 0)), default=None)
         moment = moment or self._now()
         cell, flown = _memory(moment, slot)
-        return explain(moment.before, cell, self._training.agent, flown)
+        return explain(moment.before, cell, flown)
 
     def _now(self) -> _Moment:
         agent = self._training.agent
@@ -92,7 +92,7 @@ class Explanations:
 
 def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     """Return a lander's latest memory that is complete, or of a flight's end the one that sums up most."""
-    config, decided = moment.before.config, list(moment.decided)
+    config, decided = moment.before.agent.config, list(moment.decided)
     ends = [place for place, each in enumerate(decided) if each.result.ended[slot]]
     last = ends[-1] if ends else len(decided) - 1
     first = 1 + max((place for place in ends if place < last), default=-1)
@@ -121,7 +121,7 @@ def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
 
 def _size(moment: _Moment) -> int:
     """Return the number of bytes of a moment, about."""
-    before, decided = moment.before, moment.decided[0]
-    networks = (2 + len(before.optimizer)) * before.online.nbytes
+    agent, decided = moment.before.agent, moment.decided[0]
+    networks = (4 + len(agent.optimizer.memory)) * agent.online.values.nbytes  # both with room for gradients
     parts = sum(part.nbytes for part in decided.result.components.values())
     return int(networks + len(moment.decided) * (2 * decided.observation.nbytes + parts))
