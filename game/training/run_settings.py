@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import Field, asdict, dataclass, fields
 from functools import cache
+from operator import attrgetter
 from typing import Any, Final, Literal
 
 from ai.files.knobs import Knobs
@@ -55,8 +56,7 @@ class KnobDescription:
 
     def read(self, config: Configuration) -> Any:
         """Return the knob's value in a configuration."""
-        value = getattr(config, self.field)
-        return getattr(value, self.part) if self.part else value
+        return attrgetter(self.name)(config)
 
     def write(self, config: Configuration, value: Any) -> Configuration:
         """Return the configuration with another value; raises ValueError for an invalid one."""
@@ -207,8 +207,9 @@ class RunKind:
 class RunSettings:
     """Configuration and seed that the player can change.
 
-    `on_change` is called with the name and value of each setting that changes in effect; `on_restart` with the
-    configuration and seed of a new run, when changes are applied.
+    `on_change` is called with the name and value of each setting that changes in effect ("reward_weights.time" for a
+    part of the reward, "seed" for the seed); `on_restart` with the configuration and seed of a new run, when changes
+    are applied.
 
     Attributes:
         config, seed: in effect, without waiting changes.

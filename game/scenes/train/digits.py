@@ -27,6 +27,7 @@ from game.scenes.train.layout import Layout, TrainingStatus
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
+from game.training.run_settings import RunSettings
 from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -71,7 +72,8 @@ class DigitTrainingScene(TrainingScene):
         self.charts = TrainingCharts(DIGIT_CHARTS)
         self.lessons = LessonDoor(self.run, self.context.note)
         change = partial(self.run.ask, "change")
-        self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
+        settings = RunSettings(DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
+        self.knobs = KnobsPanel(self.form, settings)
         self.film = FilterFilm(self.charts)
         self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from functools import partial
 from typing import Any, Final
 
@@ -17,7 +17,6 @@ from game.training.run_settings import (
     WEIGHTS,
     Configuration,
     KnobDescription,
-    RunKind,
     RunSettings,
     figure,
     label,
@@ -39,30 +38,16 @@ class KnobsPanel:
 
     Args:
         form: the scene's form.
-        config: configuration to begin with.
-        seed: seed to begin with.
-        on_change: called with the name and value of every knob that changes; during a run, only of those that may.
-            Names are those of the configuration ("reward_weights.time" for a part of the reward, "seed" for the seed).
-        on_restart: called with a configuration and seed for a new run, once the player has applied them.
-        run_kind: the kind of run, with its presets and knobs.
+        settings: what they set, and what waits for a new run.
 
     Attributes:
-        settings: what they set, and what waits for a new run.
         every: whether all knobs are shown.
 
     """
 
-    def __init__(
-        self,
-        form: Form,
-        config: Configuration,
-        seed: int,
-        on_change: Callable[[str, Any], None],
-        on_restart: Callable[[Configuration, int], None],
-        run_kind: RunKind,
-    ) -> None:
-        self._form, self._run_kind = form, run_kind
-        self.settings = RunSettings(config, seed, on_change, on_restart, run_kind)
+    def __init__(self, form: Form, settings: RunSettings) -> None:
+        self._form, self.settings = form, settings
+        self._run_kind = run_kind = settings.run_kind
         chance = KnobDescription(SEED, "", label(SEED), texts.KNOB_SEED, run_kind.seed_page, False, "slider", _SEEDS)
         self._descriptions = {each.name: each for each in (*run_kind.knob_descriptions, chance)}
         self.pages = pages(run_kind.knob_descriptions)

@@ -94,6 +94,7 @@ class Landers:
         for swarm, state in shown:
             if state is not None and state is not swarm.swarm_state:
                 swarm.take(state)
+        for swarm in (self.now, *self.pair):
             swarm.update(still)
         self._frame += 1
 

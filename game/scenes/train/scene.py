@@ -38,6 +38,7 @@ from game.training.library import Library
 from game.training.record import take_away
 from game.training.run import TrainingRun
 from game.training.run_kind import LANDERS
+from game.training.run_settings import RunSettings
 from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -68,7 +69,8 @@ class TrainScene(TrainingScene):
     def _build(self) -> None:
         run = self.run
         self.charts, self.captions = TrainingCharts(), ChartCaptions()
-        self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
+        settings = RunSettings(PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
+        self.knobs = KnobsPanel(self.form, settings)
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
         self.rewind = Rewind(run)
         self.landers = Landers(run, self.rewind)
@@ -205,13 +207,13 @@ class TrainScene(TrainingScene):
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
         run, still = self.run, self._settings.reduced_motion
-        looked = self._listen_to_swarm()
+        looked = self._listen_to_run()
         self._advice.silence(bool(self.knobs.settings.waiting) or run.twin is not None)
         if not run.alive:
             self._advice.clear()
         else:
             self.knobs.show_in_force(run.in_force)
-        self._go_to(self.rewind.moment)
+        self._go_to_moment()
         if self._news and run.alive and not looked:  # in a frame of its own
             self._news, looked = False, True
             self._advice.follow(self.inside.health)
@@ -225,7 +227,7 @@ class TrainScene(TrainingScene):
         self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         return self._finish_update() or self.lessons.update()
 
-    def _listen_to_swarm(self) -> bool:
+    def _listen_to_run(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
         run = self.run
         network_state = run.network_state
@@ -237,14 +239,13 @@ class TrainScene(TrainingScene):
         self._news = run.alive and len(run.history) > 0
         return True
 
-    def _go_to(self, moment: int | None) -> None:
-        """Show everything as it was at a moment, or as it is now; call it once a frame."""
-        rewind = self.rewind
+    def _go_to_moment(self) -> None:
+        """Show everything as it was at the moment that is chosen, or as it is now; call it once a frame."""
+        rewind, moment = self.rewind, self.rewind.moment
         rewind.update()
-        if moment == self.charts.moment:
-            return
-        self.charts.go_to(moment)
-        self.inside.show(self.run.network_state if moment is None else rewind.network_state, rewind.row)
+        if moment != self.charts.moment:
+            self.charts.go_to(moment)
+            self.inside.show(self.run.network_state if moment is None else rewind.network_state, rewind.row)
 
     def _caption(self, chart: str) -> str:
         run = self.run
