@@ -85,6 +85,7 @@ class OwnPilot:
         chosen: whether it is to fly, and not another that the player chose since.
         reported: the words on it that were reported last, for whoever reports each once.
         ready: whether a process has answered yet; until then it coasts.
+        version: how often another version of the file has taken over.
 
     """
 
@@ -92,7 +93,7 @@ class OwnPilot:
 
     def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
         self.path, self.problem, self.reported = path, "", ""
-        self.flies_on, self.ready, self.chosen = False, False, True
+        self.flies_on, self.ready, self.chosen, self.version = False, False, True, 0
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None
         self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not
@@ -177,6 +178,7 @@ class OwnPilot:
             self._before.close()
         self._before, self._flying, self._next = self._flying, self._next, None
         self.problem, self._late = "", 0
+        self.version += 1
 
     def _refuse(self, error: PilotError) -> None:
         self.problem, self.flies_on = str(error), self._flying is not None
@@ -190,6 +192,7 @@ class OwnPilot:
         if self._before or self._late == LATE or self._flying.gone:
             self._flying.close()
             self._flying, self._before, self._late = self._before, None, 0
+            self.version += 1
         else:
             return False
         return self._flying is not None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from ai.lander.environment import OBSERVATION_SCALE
+from game.core import texts
 from game.ui import plotting
 
 _SMALL: Final = 1e-4
@@ -28,6 +30,11 @@ def points(value: float, digits: int = 2) -> str:
 def percent(share: float, digits: int = 0) -> str:
     """Write a share in percent, with so many digits after the point: 35 %."""
     return f"{decimal(100 * share, digits)} %"
+
+
+def what_is_sensed(feature: int) -> str:
+    """Say what an input of the lander's networks is, and its unit."""
+    return texts.EXPLAIN_INPUTS[feature].format(unit=1 / OBSERVATION_SCALE[feature])
 
 
 def number(value: float) -> str:

@@ -83,8 +83,9 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
     x, track, right, points = left + NAME, width - NAME - _FIGURE, left + width, signed(values.expected)
     canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
     canvas.text(points, (x + track, top), size=TEXT, align="right", tabular=True)
-    canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_EXPECTED,
-                   lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points))  # fmt: skip
+    canvas.explain(
+        (left, top - 14, width, 20), texts.EXPLAIN_EXPECTED, lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points)
+    )
     for action in range(len(ACTION_NAMES)):
         y = top + FIRST + ROW * action
         _draw_row(canvas, values, action, (left, y), width)

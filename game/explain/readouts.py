@@ -32,13 +32,12 @@ from game.drawing.tokens import (
     TEXT,
     VIEW_SIZE,
     Colour,
-)  # fmt: skip
+)
 from game.flight import outcomes
 
 Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
 READOUTS: Final = 80.0  # points at the foot of a page that they take
-PILOT: Final = ("altitude", "descent", "drift", "tilt")  # what a pilot needs in flight, of `GAUGES`
 LITTLE_TIME: Final = 5.0  # seconds left, below which a pilot is warned
 LITTLE_FUEL: Final = 0.2  # share of the tank left, likewise
 _LABEL_LINE: Final = 663.0
@@ -157,8 +156,9 @@ class Gauge:
     """What a read-out reads, and its place.
 
     Attributes:
-        column: its left end, in points.
+        column: its left end, in points, in a flight of the player's.
         read: makes it, given an environment and a slot.
+        watched: its left end where choices stand on the left; None for one that is not shown there.
         cause: the crash that is named by it, if any.
         felt: which of an impact's figures that crash has.
 
@@ -166,20 +166,22 @@ class Gauge:
 
     column: float
     read: Callable[[LanderEnv, int], Readout]
+    watched: float | None = None
     cause: Cause | None = None
     felt: int = 0
 
 
 # Four on the left, three on the right: the landing pad stands in the middle. A name is its key in the texts.
 GAUGES: Final = {
-    "altitude": Gauge(64.0, _altitude),
-    "descent": Gauge(194.0, _descent, Cause.HARD, 0),
-    "drift": Gauge(324.0, _drift, Cause.SLIDING, 1),
-    "tilt": Gauge(454.0, _tilt, Cause.TILTED, 2),
+    "altitude": Gauge(64.0, _altitude, 758.0),
+    "descent": Gauge(194.0, _descent, 880.0, Cause.HARD, 0),
+    "drift": Gauge(324.0, _drift, 1002.0, Cause.SLIDING, 1),
+    "tilt": Gauge(454.0, _tilt, 1124.0, Cause.TILTED, 2),
     "thrust": Gauge(880.0, _thrust),
     "fuel": Gauge(1002.0, _fuel),
     "time": Gauge(1124.0, _time),
 }
+PILOT: Final = tuple(name for name, gauge in GAUGES.items() if gauge.watched is not None)  # what a pilot needs
 
 
 def flight_readouts(env: LanderEnv, slot: int = 0) -> dict[str, Readout]:
@@ -209,16 +211,23 @@ def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]
 def draw_flight(canvas: Canvas, readouts: dict[str, Readout], names: Iterable[str] = GAUGES) -> None:
     """Draw those of a flight's read-outs that are named, each in its own column."""
     shown = [name for name in names if name in readouts]
-    draw_readouts(canvas, [readouts[name] for name in shown], [GAUGES[name].column for name in shown])
+    _draw_readouts(canvas, [(GAUGES[name].column, readouts[name]) for name in shown])
 
 
-def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float]) -> None:
+def draw_watched(canvas: Canvas, env: LanderEnv, slot: int) -> None:
+    """Draw what a pilot needs of a flight that is watched."""
+    readouts = flight_readouts(env, slot)
+    placed = ((gauge.watched, readouts[name]) for name, gauge in GAUGES.items())
+    _draw_readouts(canvas, [(column, readout) for column, readout in placed if column is not None])
+
+
+def _draw_readouts(canvas: Canvas, placed: Sequence[tuple[float, Readout]]) -> None:
     """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
     if canvas.whole is canvas:  # a page has no world behind it
         width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
         corner = 0, canvas.surface.get_height() - height
         canvas.surface.blit(_shade((width, height)), corner, special_flags=pygame.BLEND_PREMULTIPLIED)
-    for x, readout in zip(columns, readouts, strict=True):
+    for x, readout in placed:
         below = canvas.at(-1 if x < VIEW_SIZE[0] / 2 else 1, 1)
         _draw_readout(below, x, readout)
         if readout.what:
@@ -342,8 +351,9 @@ def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None
     if landed + lost == 0:
         return
     (left, top), share = corner, f"{100 * landed / (landed + lost):.0f}"
-    figure = canvas.text(share, (left - 1, top), size=FIGURE, weight="light", tabular=True,
-                         colour=rate_colour(canvas, float(share)))  # fmt: skip
+    figure = canvas.text(
+        share, (left - 1, top), size=FIGURE, weight="light", tabular=True, colour=rate_colour(canvas, float(share))
+    )
     canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
     counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
     canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from game.ui.context import Context
 
 STARTS: Final = 1000
+GOOD: Final = 0.9  # share of them that a pilot who can fly lands
 _SEED: Final = 2_000_003  # of the starts that all are measured from
 RIVALS: Final = ("modern", "classic", networks.SCRIPTED)
 _LONGEST: Final = 90  # characters of a problem
@@ -62,17 +63,18 @@ def wrong(pilot: OwnPilot) -> str:
 def measure(user_dir: Path, models_dir: Path, path: Path) -> Generator[list[Any], None, None]:
     """Measure a file's pilot, then those rivals that never were, and write it down; a generator for a worker.
 
-    Yields lists of messages: how much of a pilot's flights is over, 0 to 1, and each `Measured`. Raises PilotError for
-    what is wrong with the file, OSError for what cannot be written.
+    Yields lists of messages: how much of it all is over, 0 to 1, and each `Measured`. Raises PilotError for what is
+    wrong with the file, OSError for what cannot be written.
     """
-    shelf = Shelf(user_dir)
-    known = {each.name for each in shelf.measured() if each.name.startswith(_MARK)}
+    shelf, policies = Shelf(user_dir), networks.Policies(models_dir, user_dir)
+    known = {each.name for each in shelf.measured()}
+    others = [name for name in RIVALS if _MARK + name not in known and name in policies.names]
+    part = 1 / (1 + len(others))
     with closing(MeasuredPilot(path)) as own:
-        yield from _measured(shelf, path.stem, own)
-    policies = networks.Policies(models_dir, user_dir)
-    for name in RIVALS:
-        if _MARK + name not in known and name in policies.names and (policy := policies[name].policy):
-            yield from _measured(shelf, _MARK + name, policy)
+        yield from _measured(shelf, path.stem, own, 0.0, part)
+    for number, name in enumerate(others, 1):
+        if policy := policies[name].policy:
+            yield from _measured(shelf, _MARK + name, policy, number * part, part)
 
 
 def rivals(measured: list[Measured]) -> dict[str, Measured]:
@@ -96,7 +98,8 @@ def by_hand(entries: list[Entry]) -> tuple[Measured, int] | None:
     return Measured("", len(landings) / len(flown), seconds, fuel), len(flown)
 
 
-def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], None, None]:
+def _measured(shelf: Shelf, name: str, pilot: Pilot, begun: float, part: float) -> Generator[list[Any], None, None]:
+    """Measure one pilot, whose flights are that part of all, after what was over before."""
     env = LanderEnv(STARTS, _SEED)
     env.reset()
     began, trial = time.time(), flown(pilot, env)
@@ -104,7 +107,7 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
     while score is None:
         try:
             next(trial)
-            yield [float((env.outcome != Outcome.FLYING).mean())]
+            yield [begun + part * float(env.time.max()) / env.limits.time]  # the last flights take their time
         except StopIteration as done:
             score = Evaluation.of(done.value)
     crashed = np.bincount(env.cause[env.outcome == Outcome.CRASHED], minlength=len(Cause))[1:]
@@ -112,4 +115,4 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
     lost = tuple(int(count) for count in (*crashed, *others))
     result = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(began, 3), lost)
     shelf.keep(result)
-    yield [result]
+    yield [begun + part, result]

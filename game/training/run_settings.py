@@ -118,8 +118,9 @@ def _kind(item: Field[Any]) -> KnobKind:
 def _weight(part: Field[Any], live: bool) -> KnobDescription:
     default = float(getattr(RewardWeights(), part.name))
     stops = tuple(_rounded(share * default) for share in _SHARES) if default else _COSTS
-    word, said, *advice = texts.KNOB_WEIGHTS.get(part.name, (part.name.capitalize(), ""))
-    return KnobDescription(WEIGHTS, part.name, word, said, REWARD, live, "slider", stops, tuple(advice))
+    word, said = texts.REWARD_PARTS.get(part.name, (part.name, ""))
+    advice = texts.KNOB_WEIGHTS.get(part.name, ())
+    return KnobDescription(WEIGHTS, part.name, word.capitalize(), said, REWARD, live, "slider", stops, advice)
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:

@@ -127,7 +127,7 @@ class Column:
 
     def widget(self, widget: W) -> W:
         """Add a widget, as the next one of the form."""
-        self.add(widget.lay, widget.label)
+        self.add(widget.lay)
         self._widgets.append(widget)
         return self._form.add(widget)
 

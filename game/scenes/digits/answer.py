@@ -62,6 +62,10 @@ class DigitBars(RowWidget):
         self.digit += step
         return True
 
+    def advance(self) -> None:
+        """Go to the next digit, and after the last to the first."""
+        self.digit = (self.digit + 1) % _DIGITS
+
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)
         part = 1.0 if at_once else _EASE

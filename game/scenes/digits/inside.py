@@ -231,7 +231,7 @@ class DigitInsideScene(PanelScene):
         if found := code_of(self.walk):
             draw_listing(canvas, box, *found)
         else:
-            draw_wrapped(canvas, texts.PATCH_NO_CODE, (box.left, box.top + 16), box.width)
+            draw_wrapped(canvas, texts.LESSON_NO_SOURCE, (box.left, box.top + 16), box.width)
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -49,7 +49,7 @@ class BackwardsChapter(Chapter):
 
     """
 
-    key, answer, door, shape = "backwards", 1, Route("digits"), 0.42
+    key, answer, door, shape, explains = "backwards", 1, Route("digits"), 0.42, True
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)

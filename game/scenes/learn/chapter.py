@@ -38,9 +38,10 @@ class Chapter(ABC):
 
     Attributes:
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
-        answer: number of the answer that every try shows; None if that depends on the try.
+        answer: number of the answer that every try shows; None if that depends on what was tried.
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
+        explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         complete: whether all that it asks for was done, beyond a try; then its "see why" makes it done.
         problem: why there is nothing to show or to try; empty if there is.
@@ -52,6 +53,7 @@ class Chapter(ABC):
     answer: ClassVar[int | None] = None
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
+    explains: ClassVar[bool] = False
     problem = ""
     complete = True
 
@@ -81,7 +83,7 @@ class Chapter(ABC):
         """Begin anew, as when the chapter was opened."""
 
     def verdict(self) -> int | None:
-        """Return the number of the answer that the player's own try has shown; None if it does not decide that."""
+        """Return the number of the answer that the player's own tries have shown; None while they decide nothing."""
         return self.answer
 
     @abstractmethod

@@ -59,8 +59,9 @@ class LearnScene(PanelScene):
         right.text(lambda: texts.LEARN[self.chosen]["lead"], size=SMALL + 1, colour=MUTE)
         right.text(self._guessed, size=SMALL + 1, colour=HUMAN)
         right.gap(6)
-        self._verb = right.button(texts.LEARN_VERBS[self._progress.state(self.chosen)], self._open, size=TITLE,
-                                  colour=INK)  # fmt: skip
+        self._verb = right.button(
+            texts.LEARN_VERBS[self._progress.state(self.chosen)], self._open, size=TITLE, colour=INK
+        )
         right.gap(24)
         right.button(texts.LEARN_PHYSICS, partial(push, "physics"), texts.LEARN_PHYSICS_ASIDE)
 

@@ -166,11 +166,11 @@ class MomentChapter(Chapter):
         self.tried = self.changed = True
 
     def verdict(self) -> int | None:
-        """Return the answer next to what came of the last moment; None if it was not about a hundred decisions."""
-        last = self.judged[-1]
-        if last.decisions not in _ASKED:
+        """Return the answer next to what came of the last flight of about a hundred decisions; None before one."""
+        came = next((each.came for each in reversed(self.judged) if each.decisions in _ASKED), None)
+        if came is None:
             return None
-        return len(_ANSWERS) if last.came < 0 else int(np.argmin(np.abs(np.array(_ANSWERS) - last.came)))
+        return len(_ANSWERS) if came < 0 else int(np.argmin(np.abs(np.array(_ANSWERS) - came)))
 
     def why(self) -> str:
         last = self.judged[-1]
@@ -286,11 +286,12 @@ class ChoiceChapter(MomentChapter):
     def why(self) -> str:
         sentences = " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
-                action=texts.said(ACTION_NAMES[action]), value=points(float(self.values[action]), 1),
+                action=texts.said(ACTION_NAMES[action]),
+                value=points(float(self.values[action]), 1),
                 came=points(came.came, 1),
             )
             for action, came in self.results.items()
-        )  # fmt: skip
+        )
         best = self.results.get(self.best)
         surprises = best is not None and best.came < max(came.came for came in self.results.values())
         return f"{sentences} {texts.LEARN_CHOICE_SURPRISE}" if surprises else sentences

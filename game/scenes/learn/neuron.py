@@ -79,8 +79,8 @@ class NeuronChapter(Chapter):
 
     def controls(self, column: Column) -> None:
         for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
-            column.slider(name, self.weights[number], (-_MOST, _MOST), partial(self.set, number), step=0.5,
-                          figure=lambda weight: decimal(weight, 1, "+"))  # fmt: skip
+            column.slider(name, self.weights[number], (-_MOST, _MOST), partial(self.set, number), step=1,
+                          figure=lambda weight: decimal(weight, 0, "+"))  # fmt: skip
         column.button(texts.LEARN_NEURON_PUSH, self.push)
         column.button(texts.LEARN_NEURON_HINT, self.hint)
 
@@ -114,7 +114,7 @@ class NeuronChapter(Chapter):
 
     def _decide(self) -> None:
         """Let the neuron choose the jet; a fixed rule fires the main engine when the lander sinks."""
-        self.sensed: Floats = self.env.observe()[:, SENSES]
+        self.sensed: Floats = np.round(self.env.observe()[:, SENSES], 2)  # what is written is what is computed
         self.output = float(self.network.predict(self.sensed)[0, 0])
         self.steer = 1 if self.output > _FIRES else 2 if self.output < -_FIRES else 0
         sinking = self.env.velocity[0, 1] + 0.5 * (self.env.position[0, 1] - _HEIGHT) < 0
@@ -146,17 +146,17 @@ class NeuronChapter(Chapter):
 
     def why(self) -> str:
         seconds, weights = self.best
-        tilt, spin, speed = (decimal(weight, 1, "+") for weight in weights)
+        tilt, spin, speed = (decimal(weight, 0, "+") for weight in weights)
         template = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
         return template.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
 
     def code(self) -> Sequence[Code]:
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
         total = " ".join(
-            f"{decimal(value, 2, '+')}×{decimal(weight, 1)}"
+            f"{decimal(value, 2, '+')}×{decimal(weight, 0)}"
             for value, weight in zip(inputs.tolist(), weights.tolist(), strict=True)
         )
-        sums: dict[Mark, str] = {np.dot: total, "output": decimal(float(self.layer.bias[0]), 1, "+")}
+        sums: dict[Mark, str] = {np.dot: total, "output": decimal(float(self.layer.bias[0]), 0)}
         return [Code(FullyConnectedLayer.predict, np.dot, sums)]
 
     def below(self, column: Column) -> None:
@@ -191,9 +191,10 @@ class NeuronChapter(Chapter):
         ):
             y = box.top + box.height * (number + 0.6) / len(SENSES)
             words = texts.LEARN_NEURON_PRODUCT.format(
-                value=decimal(float(self.sensed[0, number]), 2, "+"), weight=decimal(self.weights[number], 1, "+"),
+                value=decimal(float(self.sensed[0, number]), 2, "+"),
+                weight=decimal(self.weights[number], 0, "+"),
                 product=decimal(product, 2, "+"),
-            )  # fmt: skip
+            )
             end = box.left + 0.6 * box.width
             canvas.text(name, (box.left + 4, y), size=SMALL, colour=MUTE, room=0.22 * box.width)
             canvas.text(words, (end, y), size=SMALL, align="right", tabular=True)

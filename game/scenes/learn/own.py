@@ -30,7 +30,6 @@ from game.ui.panel import Column
 
 # Where each step is done; a race is begun here.
 STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": "", "file": ""}
-LANDS: Final = 0.9  # share of its starts that a file of one's own is to land
 _INDENT: Final = 32.0
 
 
@@ -129,13 +128,9 @@ class OwnChapter(Chapter):
         with suppress(OSError):
             files = own_pilots.own(self._shelf.measured())
         pilot = max(files, key=lambda each: each.landed, default=None)
-        yield (
-            "file",
-            bool(pilot and pilot.landed >= LANDS),
-            sentences["flown" if pilot else "unwritten"].format(
-                name=pilot.name if pilot else "", share=percent(pilot.landed if pilot else 0.0)
-            ),
-        )
+        share = pilot.landed if pilot else 0.0
+        key = "written" if share >= own_pilots.GOOD else "flown" if pilot else "unwritten"
+        yield "file", key == "written", sentences[key].format(name=pilot.name if pilot else "", share=percent(share))
 
     def why(self) -> str:
         if not self._runs:
@@ -150,8 +145,10 @@ class OwnChapter(Chapter):
     def below(self, column: Column) -> None:
         for name in STEPS:
             column.add(partial(self._write_step, name))
-        column.text(lambda: texts.LEARN_OWN_DONE.format(done=sum(step.done for step in self.steps.values()),
-                                                        count=len(STEPS)), colour=MUTE)  # fmt: skip
+        column.text(
+            lambda: texts.LEARN_OWN_DONE.format(done=sum(step.done for step in self.steps.values()), count=len(STEPS)),
+            colour=MUTE,
+        )
 
     def _write_step(self, name: str, cursor: Cursor) -> None:
         """Write a step behind a ring, or a full one once it is done."""

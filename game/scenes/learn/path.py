@@ -75,8 +75,21 @@ class Progress:
         return 2 if self._of(key).get("done") is True else int(isinstance(self._settings.learnt.get(key), dict))
 
     def done(self, key: str) -> bool:
-        """Return whether a chapter was tried, its "see why" read, and all that it asks for done."""
+        """Return whether a chapter's question was answered, its "see why" read, and all that it asks for done."""
         return self.state(key) == 2
+
+    def shown(self, key: str) -> tuple[str, int | None]:
+        """Return what the latest tries in a chapter have shown, empty before, and the number of the answer that came.
+
+        What was written in another language is not said again.
+        """
+        why = self._of(key).get("why") if self._of(key).get("language") == texts.LANGUAGE else ""
+        came = self._number(key, "came")
+        return why if isinstance(why, str) else "", came if came in range(len(texts.LEARN_ANSWERS[key])) else None
+
+    def show(self, key: str, why: str, came: int | None) -> None:
+        """Keep what tries in a chapter have shown, for the next visit."""
+        self._settings.learnt[key] = {**self._of(key), "why": why, "language": texts.LANGUAGE, "came": came}
 
     @property
     def raced(self) -> int | None:

@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.environment import Bools, Doubles, Ints
-from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.rewards import REWARDS, RewardWeights
 from ai.pilots.child import PAY
 from ai.training.config import PRESETS, Config
@@ -26,10 +26,9 @@ from game.drawing.tokens import HUMAN, SMALL
 from game.explain.figures import points
 from game.flight.poses import Poses
 from game.scenes.learn.chapter import Chapter, Code
-from game.scenes.learn.pictures import draw_ground, view_in
+from game.scenes.learn.pictures import draw_ground, draw_landers, view_in
 from game.ui.context import Context
 from game.ui.panel import Column
-from game.world.craft import draw_crowd, draw_fires
 
 Flown = dict[str, float]
 ENDS: Final = dict(zip(("landed", "crashed", "gone", "late"), list(Outcome)[1:], strict=True))
@@ -46,7 +45,8 @@ SPAWN: Final = "near"
 FLIGHTS: Final = 24
 _SEED: Final = 7  # of the flights that are looked at
 _SKIP, _PACE = 4, 2  # physics steps of a decision, and in an update
-_SIZE, _METRES, _MIDDLE = 0.6, 26.0, (0.0, 6.4)  # of a lander's picture; what the picture shows
+_SIZE, _METRES, _HEIGHT = 0.6, 26.0, 15.0  # of a lander's picture; metres that the picture shows at least
+_BELOW: Final = 0.4  # metres below the ground
 
 
 def config_of(pay: RewardWeights) -> Config:
@@ -100,7 +100,7 @@ class PayChapter(Chapter):
 
     """
 
-    key, answer, door = "pay", 1, Route("train")
+    key, door = "pay", Route("train")
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -146,11 +146,13 @@ class PayChapter(Chapter):
         """Return what the chosen pay is."""
         if self.own:
             return self.own.name
-        pay, steps = PAYS[self.pay], 1 / DT
+        pay = PAYS[self.pay]
         return texts.LEARN_PAY_POINTS.format(
-            second=points(pay.time * steps, 0), engine=points(pay.engine * steps, 1), landing=points(pay.terminal, 0),
+            second=points(pay.time / DT, 0),
+            engine=points(pay.engine / DT, 1),
+            landing=points(pay.terminal, 0),
             crash=points(-pay.terminal, 0),
-        )  # fmt: skip
+        )
 
     def choose(self, index: int) -> None:
         """Choose a pay, an index into `PAYS`."""
@@ -196,6 +198,13 @@ class PayChapter(Chapter):
         if trial.over:
             self.results[self.own.name if self.own else self.pay], self.tried, self.changed = trial.flown(), True, True
 
+    def verdict(self) -> int | None:
+        """Return what most flights did on the pay of the question: land, fly on, or crash; None before it was tried."""
+        flown = self.results.get(ASKED)
+        if flown is None:
+            return None
+        return int(np.argmax([flown["landed"], flown["late"] + flown["gone"], flown["crashed"]]))
+
     def why(self) -> str:
         return " ".join(
             texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES.get(key, key), count=FLIGHTS, **flown)
@@ -204,7 +213,7 @@ class PayChapter(Chapter):
 
     def code(self) -> Sequence[Code]:
         pay = PAYS[self.pay]
-        weights = texts.LEARN_PAY_NOTE.format(time=points(pay.time, 1), terminal=points(pay.terminal, 0))
+        weights = texts.LEARN_PAY_NOTE.format(time=points(pay.time / DT, 0), terminal=points(pay.terminal, 0))
         return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
 
     def below(self, column: Column) -> None:
@@ -220,12 +229,13 @@ class PayChapter(Chapter):
         return self.note or texts.LEARN_PAY_WAITING
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        view = view_in(box, _MIDDLE, _METRES, canvas.scale)
+        metres = max(_METRES, _HEIGHT * box.width / box.height)
+        middle = PARAMS.ground - _BELOW + 0.5 * metres * box.height / box.width
+        view = view_in(box, (0.0, middle), metres, canvas.scale)
         draw_ground(canvas, box, view)
         poses, burning = self._shown(alpha)
         if len(poses):
-            draw_fires(canvas, view, poses[burning], self.decisions, _SIZE)
-            draw_crowd(canvas, view, poses, _SIZE)
+            draw_landers(canvas, box, view, poses, burning, self.decisions, _SIZE)
 
     def _shown(self, alpha: float) -> tuple[Doubles, Bools]:
         """Return the poses (n, 3) to draw, and which of them fire their main engines (n,)."""

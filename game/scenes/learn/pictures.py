@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.environment import Doubles
+from ai.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, LanderEnv
 from ai.nn import Array
 from game.drawing.canvas import Canvas
@@ -18,9 +18,10 @@ from game.drawing.tokens import CAPTION, FAINT, LINE, MUTE, NIGHT0, VIEW_SIZE, C
 from game.flight.poses import Poses
 from game.world import lander as art
 from game.world.camera import POINTS_PER_METRE, View
-from game.world.craft import draw_craft
+from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.landscape.pad import draw_pad
 
+HEAD: Final = 1.3  # metres from a lander's middle to above its antenna
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _DEPTH: Final = 0.62  # share of the pure colour at an end of a heat map's scale
 _MOST: Final = 150  # points of a curve that are drawn
@@ -50,6 +51,18 @@ def draw_ground(canvas: Canvas, box: pygame.FRect, view: View) -> None:
     ((_, ground),) = view.points([(0.0, PARAMS.ground)]).tolist()
     canvas.line((box.left, ground), (box.right, ground), FAINT)
     draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+
+
+def draw_landers(
+    canvas: Canvas, box: pygame.FRect, view: View, poses: Doubles, burning: Bools, flicker: int, size: float = 1.0
+) -> None:
+    """Draw landers at poses (n, 3), some with their fires; a mark at the edge for each that the top would cut."""
+    heads = view.points(poses[:, :2] + (0.0, HEAD * size))
+    above = heads[:, 1] < box.top
+    draw_fires(canvas, view, poses[burning & ~above], flicker, size)
+    draw_crowd(canvas, view, poses[~above], size)
+    for x in heads[above, 0].tolist():
+        canvas.marker("triangle", (x, box.top + 8), 8, MUTE)
 
 
 class DrawnLander:
@@ -88,8 +101,9 @@ def draw_curve(canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colo
     """Draw a curve of heights, 0 to 1, over `length` decisions; NaN leaves a gap."""
     places = [
         (box.left + box.width * at / length, box.bottom - box.height * float(heights[at]))
-        for at in range(0, len(heights), max(1, length // _MOST)) if np.isfinite(heights[at])
-    ]  # fmt: skip
+        for at in range(0, len(heights), max(1, length // _MOST))
+        if np.isfinite(heights[at])
+    ]
     for a, b in pairwise(places):
         canvas.line(a, b, colour, 2)
 

@@ -24,15 +24,13 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, Colour
 from game.explain.figures import percent, points
 from game.scenes.learn.chapter import Chapter, Code
-from game.scenes.learn.pictures import draw_axis, draw_curve, inside, view_in
+from game.scenes.learn.pictures import HEAD, draw_axis, draw_curve, draw_landers, inside, view_in
 from game.ui.context import Context
 from game.ui.panel import Column
-from game.world.craft import draw_crowd, draw_fires
 
 PACE: Final = 40.0  # decisions a second: four times as fast as they would fly
 _APART: Final = 2.6  # metres between two landers of the picture
 _SKY: Final = 14.0  # metres of height that are shown, at least
-_SHARE: Final = 0.5  # a lander's size
 
 
 class RunsChapter(Chapter):
@@ -147,7 +145,7 @@ class RunsChapter(Chapter):
         return self.fault or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
 
 
-def draw_landers(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:
+def draw_row(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:
     """Draw one-engine landers side by side; only the ground before they fly."""
     metres = _APART * (count + 0.6)
     height = metres * box.height / box.width
@@ -157,19 +155,22 @@ def draw_landers(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker
         return
     across = _APART * (np.arange(count) - (count - 1) / 2)
     # A picture lower than the sky is squeezed: heights are drawn to a scale of their own.
-    squeeze = min(1.0, (height - 2 * PARAMS.stand) / _SKY)
+    squeeze = min(1.0, (height - PARAMS.stand - HEAD) / _SKY)
     poses = np.stack([across, flown.height * squeeze + PARAMS.stand, np.zeros(count)], axis=1)
     with inside(canvas, box):
-        burning = flown.main & (flown.outcome == Outcome.FLYING)
-        draw_fires(canvas, view, poses[burning], flicker, 2 * _SHARE)
-        draw_crowd(canvas, view, poses, 2 * _SHARE)
+        draw_landers(canvas, box, view, poses, flown.main & (flown.outcome == Outcome.FLYING), flicker)
 
 
 # Two agents that differ in one thing
 
 
 class DuelChapter(RunsChapter):
-    """Two agents; the right one is as the player chooses. A chart of one quantity stands below each."""
+    """Two agents; the right one is as the player chooses. A chart of one quantity stands below each.
+
+    Attributes:
+        came: number of the answer that the latest runs with the question's choice have shown; None before.
+
+    """
 
     shape = 0.6
     quantity: ClassVar[str]  # the field of `SmallState` that its chart shows
@@ -199,6 +200,13 @@ class DuelChapter(RunsChapter):
         """Share of the latest flights that landed, of each run."""
         return tuple(state.landed or 0.0 for state in self.states[-1])
 
+    def restart(self) -> None:
+        super().restart()
+        self.came: int | None = None
+
+    def verdict(self) -> int | None:
+        return self.came
+
     def controls(self, column: Column) -> None:
         label, words = self.options()
         column.choice(label, words, self.choice, self.choose)
@@ -211,7 +219,7 @@ class DuelChapter(RunsChapter):
             canvas.text(self.name(run, shown), (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
             sky = pygame.FRect(left, box.top + 22, half, 0.36 * box.height)
             state = self.states[-1][run] if self.states else None
-            draw_landers(canvas, sky, state.flown if state else None, len(self.states))
+            draw_row(canvas, sky, state.flown if state else None, len(self.states))
             chart = pygame.FRect(left + 72, sky.bottom + 34, half - 72, box.bottom - sky.bottom - 44)
             self.draw_scale(canvas, chart)
             if state:
@@ -255,14 +263,11 @@ class TargetChapter(DuelChapter):
         """Largest value that each run expected of its landers so far, in points."""
         return tuple(float(np.nanmax(self.history(run, "value"))) for run in range(2))
 
-    def verdict(self) -> int | None:
-        """Return what became of the agent without a copy that stands still; None if the right one had such."""
-        usual, other = self.landed
-        if self.flown:
-            return None
-        if self.peaks[1] > BOUND:
-            return 2
-        return 0 if other > usual + _MORE else 1 if other >= usual - _MORE else None
+    def finish(self) -> None:
+        if self.flown == 0:
+            usual, other = self.landed
+            kept = 0 if other > usual + _MORE else 1 if other >= usual - _MORE else 3
+            self.came = 2 if self.peaks[1] > BOUND else kept
 
     def why(self) -> str:
         (usual, other), (least, peak) = map(percent, self.landed), map(_figure, self.peaks)
@@ -325,12 +330,10 @@ class DaringChapter(DuelChapter):
     def name(self, run: int, choice: int) -> str:
         return texts.LEARN_DARING_NAMES[run].format(share=percent(DARING[choice]))
 
-    def verdict(self) -> int | None:
-        """Return which of both lands at least half its flights; None for another share than that of the question."""
-        if self.flown != 1:
-            return None
-        never, other = (landed >= _LEARNED for landed in self.landed)
-        return 2 if never and other else 0 if never else 1 if other else 3
+    def finish(self) -> None:
+        if self.flown == self.first:
+            never, other = (landed >= _LEARNED for landed in self.landed)
+            self.came = 2 if never and other else 0 if never else 1 if other else 3
 
     def why(self) -> str:
         never, other = map(percent, self.landed)

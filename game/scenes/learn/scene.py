@@ -46,10 +46,11 @@ class ChapterScene(PanelScene):
         super().__init__(context)
         self._progress, self.explained = Progress(context.settings), Explained()
         self.chapter = chapter_type(key)(context)
-        # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
+        # One that is done asks for a guess again.
         guessed = self._progress.guess(key) is not None and not self._progress.done(key)
         self.page = TRY if guessed else PREDICT
-        self._function, self._why, self._code = 0, "", list[Code]()
+        self._function, self._code = 0, list[Code]()
+        self._why, self._came = self._progress.shown(key)
         context.settings.chapter = key
         self._progress.note(key, done=self._progress.done(key) and self.chapter.complete)
         self.turn_to(self.page)
@@ -68,20 +69,26 @@ class ChapterScene(PanelScene):
         return self.chapter.key
 
     def turn_to(self, page: int) -> None:
-        """Show another page; "see why" makes a chapter done that was tried."""
+        """Show another page; "see why" makes a chapter done whose question a try has answered."""
         on_tabs = page != self.page and self.form.focused is self._tabs
         self.page = page
-        if page == WHY and self.chapter.tried:
-            self._progress.note(self.key, done=self.chapter.complete)
-        self.context.apply_settings()
         self.panel.scrolled = 0.0
         self.reword()
+        if page == WHY and self.chapter.tried:
+            self._progress.show(self.key, self._why, self._came)
+            answered = self._came is not None or self._progress.done(self.key)
+            self._progress.note(self.key, done=self.chapter.complete and answered)
+        self.context.apply_settings()
         if not on_tabs:
             self.form.focus(self.form.widgets[1])
 
     def reword(self) -> None:
         """Describe the page with the numbers of this moment: of what runs on they could not be read otherwise."""
-        self._why = self.chapter.why() if self.chapter.tried else ""
+        self._why, self._came = self._progress.shown(self.key)
+        self._tried = self.chapter.tried
+        if self._tried:
+            self._why, came = self.chapter.why(), self.chapter.verdict()
+            self._came = self._came if came is None else came
         self._code = list(self.chapter.code()) if self.page == CODE and not self.chapter.problem else []
         self.build()
 
@@ -102,7 +109,7 @@ class ChapterScene(PanelScene):
             *again,
             Action(Command.NEXT, self._go_on, on),
             Action(Command.PREVIOUS, partial(self._turn, -1)),
-            self.explained.action(),
+            *([self.explained.action()] if self.chapter.explains and self.page != CODE else []),
             self.form.goes_back(texts.HINT_BACK),
         ]
 
@@ -112,7 +119,7 @@ class ChapterScene(PanelScene):
     def update(self) -> Transition | None:
         if self.page != PREDICT and not self.chapter.problem:
             self.chapter.update()
-        if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._why):
+        if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._tried):
             self.turn_to(WHY)  # what was begun on the page before has come to its end
         elif self.chapter.changed:
             self.build()
@@ -185,7 +192,7 @@ class ChapterScene(PanelScene):
     def _describe_why(self, column: Column) -> None:
         guess = self._progress.guess(self.key)
         if guess is not None:
-            column.add(partial(self._write_verdict, guess, self.chapter.verdict() if self._why else None))
+            column.add(partial(self._write_verdict, guess))
         waits = texts.LEARN_STILL_RUNS if self.chapter.running else texts.LEARN_TRY_FIRST
         column.text(self._why or waits, size=_BODY)
         column.gap(8)
@@ -193,9 +200,9 @@ class ChapterScene(PanelScene):
             column.text(self.chapter.words.get(name, ""), size=_BODY, colour=MUTE)
             column.gap(8)
 
-    def _write_verdict(self, guess: int, came: int | None, cursor: Cursor) -> None:
-        """Write the card of a guess: what was said, and what came of this very try."""
-        answers, top = texts.LEARN_ANSWERS[self.key], cursor.y
+    def _write_verdict(self, guess: int, cursor: Cursor) -> None:
+        """Write the card of a guess: what was said, and what came of the player's tries."""
+        answers, came, top = texts.LEARN_ANSWERS[self.key], self._came, cursor.y
         open_words = texts.LEARN_UNDECIDED.get(self.key, "") if self._why else ""
         colour = MUTE
         if came is not None and cursor.canvas:
@@ -235,7 +242,7 @@ class ChapterScene(PanelScene):
         code = self._code[self._function]
         source = source_of(code.function)
         if source is None:
-            column.text(texts.LEARN_NO_SOURCE, size=_BODY, colour=MUTE)
+            column.text(texts.LESSON_NO_SOURCE, size=_BODY, colour=MUTE)
             return
         current, notes = placed(source, code)
         add_listing(column, _LISTING, lambda: (source, current, notes))

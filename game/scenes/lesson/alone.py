@@ -83,9 +83,9 @@ class AloneFrame(Frame):
         column.text(self._result_words, size=SMALL, colour=MUTE)
 
     def _result_words(self) -> str:
-        words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
-        pulls = Pulls.of(self._step, self._lesson.derivative, self._moved)
-        return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale))
+        arrived = f"{texts.LESSON_ALONE_ARRIVED} " if self.alone.arrived else ""
+        own = pulled(Pulls.of(self._step, self._lesson.derivative, self._moved).own / self._scale)
+        return f"{arrived}{texts.LESSON_ALONE_MORE.format(count=self._step.examples, own=own)}"
 
     def _figures(self) -> list[Part]:
         """Return the value, and its target."""
@@ -99,8 +99,10 @@ class AloneFrame(Frame):
         alone = self.alone
         low, high = min(*alone.way, alone.target), max(*alone.way, alone.target)
         span, per_unit = max(_SPAN, len(alone.way) - 1), chart.height / max(high - low, 1e-9)
-        way = [(chart.left + chart.width * at / span, chart.bottom - per_unit * (value - low))
-               for at, value in enumerate(alone.way)]  # fmt: skip
+        way = [
+            (chart.left + chart.width * at / span, chart.bottom - per_unit * (value - low))
+            for at, value in enumerate(alone.way)
+        ]
         y = chart.bottom - per_unit * (alone.target - low)
         canvas.line((chart.left, y), (chart.right, y), HUMAN, 1.5, 0.8)
         beyond = -8 if way[0][1] > y else 8 + CAPTION  # on the side from which the way does not come

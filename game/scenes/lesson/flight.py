@@ -19,7 +19,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
-from game.explain.figures import decimal, number, points
+from game.explain.figures import decimal, number, points, what_is_sensed
 from game.explain.tables import Line, figure_rows, table
 from game.scenes.lesson.frame import Frame, in_points
 from game.ui.panel import Column
@@ -59,7 +59,7 @@ def moment_frame(lesson: Lesson) -> Frame:
     """Return the frame of the moment: a picture, and the nine inputs with their units."""
     units, cache = in_units(lesson.cell.state).tolist(), PaintCache()
     lines = [
-        Line((name, sensed(value, feature), number(given)), texts.LESSON_INPUTS_HELP[feature],
+        Line((name, sensed(value, feature), number(given)), what_is_sensed(feature),
              figure_rows((texts.LESSON_IN_UNITS, sensed(value, feature)),
                   (texts.LESSON_SCALED.format(scale=f"{OBSERVATION_SCALE[feature]:g}"),
                    number(float(lesson.cell.state[feature]))),
@@ -73,8 +73,6 @@ def moment_frame(lesson: Lesson) -> Frame:
     def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
         left.picture(lambda width: width * VIEW_SIZE[1] / VIEW_SIZE[0], draw)
-        left.gap(4)
-        left.aside(texts.LESSON_PICTURE_NOTE)
         right.add(table((texts.LESSON_INPUTS, texts.LESSON_IN_UNITS, texts.LESSON_GIVEN), lambda: lines))
 
     functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)
@@ -114,8 +112,8 @@ def happened_frame(lesson: Lesson) -> Frame:
         if flown is None:
             left.aside(texts.LESSON_NOT_KNOWN)
         changes = [
-            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)), help_)
-            for feature, (name, help_) in enumerate(zip(texts.INPUTS, texts.LESSON_INPUTS_HELP, strict=True))
+            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)), what_is_sensed(feature))
+            for feature, name in enumerate(texts.INPUTS)
         ]
         head = (texts.LESSON_AFTER.format(count=count), texts.LESSON_BEFORE, texts.LESSON_NOW)
         right.add(table(head, lambda: changes))

@@ -181,6 +181,6 @@ def digit_frames(lesson: DigitLesson) -> list[Frame]:
         digit_frame(words["target"], str(digit), (DigitTraining.advance,), digit, (output, target)),
         digit_frame(words["error"], signed(float(lesson.derivative[digit])), cost, digit,
                     (output, target, (BACK, lesson.derivative))),
-        GradientFrame(words["gradient"], backward_functions(network, optimizer), step),
+        GradientFrame(texts.LESSON_FRAMES["gradient"], backward_functions(network, optimizer), step),
         AfterFrame(words["after"], (Optimizer.step,), step, (before, after, 1.0), None, texts.LESSON_DIGIT_NEARER),
     ]  # fmt: skip

@@ -177,8 +177,9 @@ class GradientFrame(NetworkFrame):
         for name, memory, factor in (("mean", "gradient_sum", 1 - adam.beta1), ("square", "square_sum", 1 - adam.beta2),
                                      ("velocity", "velocity", 1.0)):  # fmt: skip
             if memory in taken.optimizer_after:
-                before, after = (factor * float(each[memory][index])
-                                 for each in (taken.optimizer_before, taken.optimizer_after))  # fmt: skip
+                before, after = (
+                    factor * float(each[memory][index]) for each in (taken.optimizer_before, taken.optimizer_after)
+                )
                 found.append(_part(words[name], number(after), before=number(before)))
         rule = words.get(f"step_{step.optimizer}", words["step_sgd"])
         found.append(_part(rule, signed(moved), rate=number(taken.learning_rate)))

@@ -90,8 +90,7 @@ class Cards(RowWidget):
         x, colour = box.left + 10, INK if lit else MUTE
         canvas.text(str(place + 1), (x, box.top + 22), size=CAPTION, colour=NET if lit else MUTE)
         canvas.text(frame.name, (x + 15, box.top + 22), size=SMALL, colour=colour, room=box.width - 30)
-        canvas.text(frame.figure, (x, box.top + 43), size=SMALL, colour=colour, tabular=True,
-                    room=box.width - 20)  # fmt: skip
+        canvas.text(frame.figure, (x, box.top + 43), size=SMALL, colour=colour, tabular=True, room=box.width - 20)
 
 
 class LessonScene(PanelScene):
@@ -140,7 +139,6 @@ class LessonScene(PanelScene):
         panel.text(lambda: f"{texts.LESSON_TITLE}: {self._whose()}", colour=MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
-        panel.explain("")  # each card says what it is
         panel.gap(8)
         panel.text(self.frame.sentence)
         panel.gap(8)

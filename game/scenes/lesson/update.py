@@ -50,25 +50,29 @@ def target_frame(lesson: Lesson) -> Frame:
 def _sum(lesson: Lesson) -> list[Part]:
     """Return the target as pay, plus the discounted value afterwards."""
     steps, ended = int(lesson.cell.steps), bool(lesson.cell.terminal)
-    target, pay, value = (float(each) / lesson.config.reward_scale
-                          for each in (lesson.target, lesson.cell.reward, lesson.next_value))  # fmt: skip
+    target, pay, value = (
+        float(each) / lesson.config.reward_scale for each in (lesson.target, lesson.cell.reward, lesson.next_value)
+    )
     whole = figure_rows(
         (texts.LESSON_PART_PAY, points(pay)),
-        (texts.LESSON_PART_VALUE.format(factor=f"{lesson.discount:.4f}", value=points(value)),
-         points(0.0 if ended else lesson.discount * value)),
+        (
+            texts.LESSON_PART_VALUE.format(factor=f"{lesson.discount:.4f}", value=points(value)),
+            points(0.0 if ended else lesson.discount * value),
+        ),
         (texts.LESSON_TARGET, points(target)),
-    )  # fmt: skip
+    )
     factor = figure_rows((f"{lesson.config.discount:g}^{steps}", f"{lesson.discount:.4f}"))
     parts = [
         Part(points(target), texts.LESSON_TARGET, texts.LESSON_TARGET_HELP, whole),
         Part("="),
         Part(points(pay), texts.LESSON_PART_PAY, texts.LESSON_RETURN_HELP),
         Part("+"),
-        Part(f"{lesson.discount:.3f}", texts.LESSON_PART_DISCOUNT.format(count=steps), texts.LESSON_DISCOUNT_HELP,
-             factor),
+        Part(
+            f"{lesson.discount:.3f}", texts.LESSON_PART_DISCOUNT.format(count=steps), texts.LESSON_DISCOUNT_HELP, factor
+        ),
         Part("×"),
         Part(points(value), texts.LESSON_PART_NEXT, texts.LESSON_NEXT_HELP),
-    ]  # fmt: skip
+    ]
     return [*parts, Part("×"), Part("0", texts.LESSON_PART_ENDED, texts.LESSON_NOTHING_AFTER)] if ended else parts
 
 
@@ -174,8 +178,10 @@ class ErrorFrame(Frame):
         ends = (box.left + 0.15 * box.width, box.left + 0.85 * box.width)
         _, here, there = draw_on_line(canvas, box, ends, (predicted, predicted, target))
         canvas.line((here, y), (there, y), EMBER, 1.5)
-        for x, value, word, colour in ((here, predicted, texts.LESSON_PREDICTED, NET),
-                                       (there, target, texts.LESSON_TARGET, HUMAN)):  # fmt: skip
+        for x, value, word, colour in (
+            (here, predicted, texts.LESSON_PREDICTED, NET),
+            (there, target, texts.LESSON_TARGET, HUMAN),
+        ):
             canvas.text(f"{word} {points(value)}", (x, y - 16), size=SMALL, colour=colour, align="centre", tabular=True)
         error_words = f"{texts.LESSON_ERROR} {points(lesson.error / self._scale)}"
         canvas.text(error_words, ((here + there) / 2, y + 22), size=SMALL, colour=MUTE, align="centre", tabular=True)

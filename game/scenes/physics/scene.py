@@ -198,7 +198,6 @@ class PhysicsScene(PanelScene):
     def describe(self, panel: Panel) -> None:
         words = [texts.EXHIBITS[name][0] for name in EXHIBITS]
         panel.choice(texts.PHYSICS_TITLE, words, list(EXHIBITS).index(self.chosen), self._choose)
-        panel.explain("")  # the law stands below
         panel.gap()
         left, right = panel.beside((9, 4), least=_LEAST, apart=40.0)
         left.text(texts.EXHIBITS[self.chosen][1])
@@ -225,9 +224,7 @@ class PhysicsScene(PanelScene):
             (texts.LAW_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             (texts.PHYSICS_MORE[self.more], self._open_more),
         ])  # fmt: skip
-        self._button_help: list[tuple[ButtonRow, str]] = list(
-            zip(buttons, (what["start"], what["plot"], what["inside"]), strict=False)
-        )
+        self._button_help: list[tuple[ButtonRow, str]] = [(buttons[1], what["plot"]), (buttons[2], what["inside"])]
         column.gap()
         if self.plot:
             self.plot.describe(column, self._progress)

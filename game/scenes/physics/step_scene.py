@@ -128,7 +128,7 @@ class PhysicsStepScene(PanelScene):
     def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
         piece, source = self.piece, source_of(self.piece.function)
         if source is None:
-            draw_wrapped(canvas, texts.STEP_NO_SOURCE, (box.left, box.top + 14), box.width, colour=MUTE)
+            draw_wrapped(canvas, texts.LESSON_NO_SOURCE, (box.left, box.top + 14), box.width, colour=MUTE)
             return
         draw_listing(canvas, box, source, piece.line, piece.notes)
 

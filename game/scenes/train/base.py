@@ -172,8 +172,6 @@ class TrainingScene(FormScene, ABC):
         self._pointed = self._pointers()
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        for row in (*self.panel.rows, *self._foot.rows):
-            row.what = ""  # a word that is read needs no tooltip; the help of a knob stands at the foot
         form.replace(before, [*(widget for widget, _ in self._pointed), *body.widgets, *foot.widgets])
         if focused is not None and focused not in form.widgets:
             alike = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)

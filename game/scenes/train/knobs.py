@@ -73,8 +73,15 @@ class KnobsPanel:
     @property
     def first(self) -> tuple[str, ...]:
         """Names of the few knobs to begin with; one that has no effect any more gives way to the one that acts."""
-        spent = in_force.idle if (in_force := self.settings.in_force) else {}
-        return tuple(dict.fromkeys(spent.get(name, name) for name in self._run_kind.first))
+        return tuple(self._acting)
+
+    @property
+    def _acting(self) -> dict[str, str]:
+        """The knobs that act in place of the few to begin with, and those whose names they keep."""
+        spent, acting = in_force.idle if (in_force := self.settings.in_force) else {}, dict[str, str]()
+        for name in self._run_kind.first:
+            acting.setdefault(spent.get(name, name), name)
+        return acting
 
     @property
     def key(self) -> Hashable:
@@ -131,16 +138,16 @@ class KnobsPanel:
     def describe(self, column: Column) -> None:
         """Add the preset's name, and the knobs: few, or a page of all."""
         column.add(self._write_name)
-        names, kind = self.first, self._run_kind
+        acting, kind = self._acting, self._run_kind
         if self.every:
             others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
             column.words([(kind.said((base, ""))[0], partial(self.load, base)) for base in others])
             tabs = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self.pages]
             column.choice("", tabs, self._page, self._turn_page, LABEL)
             page = self.pages[self._page]
-            names = tuple(name for name, each in self._descriptions.items() if each.page == page)
-        for name in names:
-            column.widget(self._knob(name))
+            acting = {name: name for name, each in self._descriptions.items() if each.page == page}
+        for name, called in acting.items():
+            column.widget(self._knob(name)).label = self._descriptions[called].label
         self.show()
 
     def describe_foot(self, column: Column) -> None:

@@ -184,11 +184,11 @@ class Laboratory:
         return self.said[subject]
 
     def _figures(self) -> str:
-        """What both land: at the verdict, or before that, now."""
+        """What both landed at the verdict, and what they land now."""
         landed = self._landed()
-        if self.came or len(landed) < 2 or not all(map(str.isdigit, landed)):
+        if len(landed) < 2 or not all(map(str.isdigit, landed)):
             return self.said["figures"]
-        return texts.LAB_FIGURES.format(other=landed[1], healthy=landed[0])
+        return f"{self.said['figures']} {texts.LAB_FIGURES.format(other=landed[1], healthy=landed[0])}".lstrip()
 
 
 def came_words(came: Verdict | None, guess: Verdict | None) -> str:
@@ -222,7 +222,7 @@ def listed_differences(before: Config, after: Config) -> str:
     found = []
     for name, (old, new) in differences(before, after).items():
         head, _, part = name.partition(".")
-        word = texts.KNOB_WEIGHTS[part][0] if part in texts.KNOB_WEIGHTS else label(head)
+        word = texts.REWARD_PARTS[part][0].capitalize() if part in texts.REWARD_PARTS else label(head)
         found.append(texts.LAB_DIFFERS.format(knob=word, before=figure(old), after=figure(new)))
     return ", ".join(found)
 

@@ -83,7 +83,6 @@ class TrainingStatus(NamedTuple):
         box = (left, top, width, cursor.y - top + 8)
         canvas.panel(box, 1.0)
         self._write(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), size)
-        canvas.explain(box, texts.EXPLAIN_TRAINED)
         HintRow(hints, (left + width - 16, top + 30), from_right=True).draw(canvas)
 
     def _write(self, cursor: Cursor, size: float) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cache, partial
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -15,6 +15,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
+from game.explain.figures import what_is_sensed
 from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
 from game.explain.readouts import draw_centred_bars
 from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
@@ -62,9 +63,7 @@ def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
         middle = top + ROW * action + (-4 if by_rules else FIRST)
         canvas.rounded((PANEL.left + _LEFT - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
     # As wide as the panel: what is said of it stands beside that, and not on the values.
-    canvas.explain(
-        (PANEL.left, top - 10, PANEL.width, HEIGHT - 20), texts.EXPLAIN_MAP[ACTION - 1], lambda: texts.EXPLAIN_MAP_NOW
-    )
+    canvas.explain((PANEL.left, top - 10, PANEL.width, HEIGHT - 20), texts.EXPLAIN_MAP[ACTION - 1])
 
 
 def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
@@ -77,7 +76,7 @@ def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
             points = signed(scale[0] + share * (scale[1] - scale[0])).removesuffix(".0")
             place = (left + share * width, top + 34)
             canvas.text(points, place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
-    canvas.explain(_LEGEND, texts.EXPLAIN_MAP[SCORE - 1], lambda: texts.EXPLAIN_MAP_NOW)
+    canvas.explain(_LEGEND, texts.EXPLAIN_MAP[SCORE - 1])
 
 
 def _paint_scale(sheet: Canvas) -> None:
@@ -94,13 +93,7 @@ def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, w
         canvas.text(name, (left, y), size=LABEL, colour=MUTE, room=90)
         figure = f"{value:.2f}".replace("-", "−")
         canvas.text(figure, (left + width, y), size=LABEL, colour=MUTE, align="right", tabular=True)
-        canvas.explain((left, y - 13, width, _PITCH), _what(number), partial(_sensed, inputs, number))
-
-
-@cache
-def _what(number: int) -> str:
-    """Say what an input is, and its unit."""
-    return texts.EXPLAIN_INPUTS[number].format(unit=1 / OBSERVATION_SCALE[number])
+        canvas.explain((left, y - 13, width, _PITCH), what_is_sensed(number), partial(_sensed, inputs, number))
 
 
 def _sensed(inputs: list[float], number: int) -> str:

@@ -121,6 +121,7 @@ class PilotsScene(PanelScene):
         lost = sorted(zip(mine.lost, texts.PILOTS_LOST, strict=False), reverse=True)
         if counts := " · ".join(words.format(count=count) for count, words in lost if count):
             column.aside(texts.PILOTS_LOST_BY.format(counts=counts))
+        column.text(texts.PILOTS_GOOD if mine.landed >= own.GOOD else "", size=SMALL, colour=HUMAN)
         path = self._files[self._name]
         column.text(lambda: texts.PILOTS_STALE if mine.stale(path) else "", size=SMALL, colour=HUMAN)
         known = own.rivals(self._measured)
@@ -133,8 +134,10 @@ class PilotsScene(PanelScene):
     # What can be done
 
     def _show(self, name: str) -> None:
+        """Choose a file, and go on to what can be done with it."""
         self._name, self._said = name, ""
         self.build()
+        self.form.focus(next(each for each in self.form.widgets if each.label == self._words[3]))
 
     def _new(self) -> None:
         try:

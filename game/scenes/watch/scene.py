@@ -41,7 +41,6 @@ _ROWS: Final = (452.0, 712.0)  # greatest width of the choices, for the pad begi
 _LABELS: Final = 60.0
 _BETWEEN: Final = 2.0  # points above and below each row
 _LONGEST_NAME: Final = 24
-_READOUTS: Final = (758.0, 880.0, 1002.0, 1124.0)  # left ends of the read-outs
 _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand can put a lander
 
 
@@ -71,6 +70,7 @@ class WatchScene(FormScene):
         self.problem = self._wanted = self._message = ""
         self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
         self._valued = True  # whether who flies gives values
+        self._version = 0  # of the player's own file that flies
         self._settings = context.settings
         self._guests = dict([guest]) if guest else {}
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
@@ -171,6 +171,9 @@ class WatchScene(FormScene):
         """Fly as many steps as the chosen speed makes due."""
         if isinstance(pilot := (self._awaited or self.network).policy, OwnPilot):
             pilot.look()
+            if pilot.version != self._version:  # what another one has landed is not this one's
+                self._version = pilot.version
+                self.swarm.landed = self.swarm.lost = 0
             if self._awaited and pilot.ready:
                 self._fly(self._awaited)
         self.world.update()
@@ -349,14 +352,12 @@ class WatchScene(FormScene):
 
     def _draw_words(self, canvas: Canvas) -> None:
         readouts.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=COUNTS[self._count]))
-        left, middle = canvas.at(-1, -1), canvas.at(0, -1)
+        left = canvas.at(-1, -1)
         left.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
         readouts.draw_hand(canvas, self._said, NET)
-        middle.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
         draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
-        shown = readouts.flight_readouts(self.swarm.env, self.world.shown)
-        readouts.draw_readouts(canvas, [shown[name] for name in readouts.PILOT], _READOUTS)
-        self._draw_notice(middle)
+        readouts.draw_watched(canvas, self.swarm.env, self.world.shown)
+        self._draw_notice(canvas.at(0, -1))
         self._panel.draw(canvas.at(*self.form.anchor).ungrown)
         if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
             self.draw_hints(canvas)
@@ -379,14 +380,6 @@ class WatchScene(FormScene):
         """Return what is wrong with a network that was chosen, or with the player's own file."""
         network = self._awaited or self.network
         return self.problem or (own.wrong(network.policy) if isinstance(network.policy, OwnPilot) else "")
-
-    def _who(self) -> str:
-        """Say who decides."""
-        if self.network.name == networks.SCRIPTED:
-            return texts.EXPLAIN_FLIES_SCRIPTED
-        mine = isinstance(self.network.policy, OwnPilot)
-        words = texts.EXPLAIN_FLIES_OWN if mine else texts.EXPLAIN_FLIES_NETWORK
-        return words.format(name=brief(self.network.name, _LONGEST_NAME))
 
     @property
     def _said(self) -> str:

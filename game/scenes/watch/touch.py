@@ -257,9 +257,6 @@ class Hand(Widget):
         canvas.outline(ring, self.radius, HUMAN, 1, 0.9 if lit == PLACE else 0.45)
         self._draw_tilt(canvas, lit == TILT)
         self._draw_arrow(canvas, lit == SPEED)
-        canvas.explain(_around(self.tilt_knob, _REACH), texts.EXPLAIN_TOUCH[TILT])
-        canvas.explain(_around(self.arrow[1], _REACH), texts.EXPLAIN_TOUCH[SPEED])
-        canvas.explain(ring, texts.EXPLAIN_TOUCH[PLACE])
 
     def _draw_tilt(self, canvas: Canvas, lit: bool) -> None:
         x, y = self.tilt_knob

@@ -207,7 +207,7 @@ def test_the_code_beside_each_stage_is_that_of_its_layer(inside: Driver, monkeyp
     monkeypatch.setattr(patch_code, "source_of", lambda _: None)
     inside.frames(2)
     assert code_of(walk) is None
-    assert texts.PATCH_NO_CODE.split()[0] in " ".join(words)
+    assert texts.LESSON_NO_SOURCE.split()[0] in " ".join(words)
     assert source.source_of(len) is None
 
 

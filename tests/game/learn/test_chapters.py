@@ -18,7 +18,7 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.core.source import source_of
-from game.explain.figures import percent, points
+from game.explain.figures import decimal, percent, points
 from game.flight.logbook import Records
 from game.scenes.learn import downhill, plane
 from game.scenes.learn import runs as runs_module
@@ -99,7 +99,10 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
             chapter.update()
         assert chapter.best[0] > 24
         assert chapter.tried
-        assert "−4.0" in chapter.why()
+        assert "−4 for tilt" in chapter.why()
+        values = (float(f"{value:.2f}") for value in chapter.sensed[0])
+        written = decimal(sum(value * weight for value, weight in zip(values, HINT, strict=True)), 2, "+")
+        assert f"The sum is {written}." in chapter._summed(), "what is written adds up"
         total = float((chapter.sensed[0] * chapter.layer.weights[:, 0]).sum() + chapter.layer.bias[0])
         assert chapter.output == pytest.approx(np.tanh(total), abs=1e-6)
         assert chapter.steer == (1 if chapter.output > 0.5 else 2 if chapter.output < -0.5 else 0)
@@ -262,6 +265,10 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
     assert haste["time"] < landing["time"]
     assert chapter.tried
     assert {str(landing["landed"]), str(haste["crashed"])} <= set(chapter.why().split())
+    assert chapter.verdict() is None, "the question was about another pay"
+    for answer, kind in enumerate(("landed", "late", "crashed")):
+        chapter.results[ASKED] = {**landing, **dict.fromkeys(("landed", "late", "gone", "crashed"), 1), kind: 9}
+        assert chapter.verdict() == answer
     chapter.close()
     assert not chapter.running
 
@@ -346,7 +353,7 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
             assert judged.came == pytest.approx(came, abs=0.05)
             assert judged.decisions == len(pays)
             assert chapter.tried
-            assert chapter.verdict() == (2 if number == 0 else None), "about 20 points; the other flights are shorter"
+            assert chapter.verdict() == 2, "about 20 points, by the first; the others are shorter"
         chapter.turn()
         assert points(judged.value, 1) in str([code.notes for code in chapter.code()]), "the moment that was judged"
     assert f"{len(MOMENTS)} moments" in chapter.why()
@@ -403,14 +410,17 @@ def test_two_agents_learn_and_a_guess_gets_its_verdict_from_this_very_run(
             run(chapter, other)
             assert chapter.verdict() is None, "the question was about another choice"
             run(chapter, asked)
+            came = chapter.verdict()
+            assert came is not None
+            assert came < len(texts.LEARN_ANSWERS[chapter.key])
             left, right = (state.landed or 0.0 for state in chapter.states[-1])
             assert {percent(left), percent(right)} <= set(_percents(chapter.why()))
             if kind is TargetChapter:
                 assert chapter.peaks[1] > 300.0, "it does on most processors"
                 assert chapter.verdict() == 2
             else:
-                came = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
-                assert chapter.verdict() == came
+                expected = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
+                assert chapter.verdict() == expected
             chapter.restart()
             assert (chapter.states, chapter.tried) == ([], False)
 

@@ -107,9 +107,39 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     said = written(driver, monkeypatch)
     scene.turn_to(WHY)
     assert texts.LEARN_CAME[True] in written(driver, monkeypatch)
+    shown = scene.chapter.why()
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
-    assert open_game(ChapterScene, "neuron").top.page == PREDICT, "opened again, it asks for a guess again"
+    driver = open_game(ChapterScene, "neuron")
+    assert driver.top.page == PREDICT, "opened again, it asks for a guess again"
+    driver.top.turn_to(WHY)
+    said = written(driver, monkeypatch)
+    assert shown in said, "and says what the last try has shown"
+    assert texts.LEARN_TRY_FIRST not in said
+    assert texts.LEARN_CAME[True] in said
+    monkeypatch.setattr(texts, "LANGUAGE", "de")
+    driver.top.reword()
+    assert shown not in written(driver, monkeypatch), "but not in another language"
+
+
+def test_a_chapter_is_not_done_before_its_question_is_answered(open_game: Open, context: Context, monkeypatch):
+    save_settings(context)
+    for key in KEYS:
+        driver = open_game(ChapterScene, key)
+        scene, progress = driver.top, Progress(driver.app.context.settings)
+        with monkeypatch.context() as patch:
+            patch.setattr(type(scene.chapter), "why", lambda _: "shown")
+            patch.setattr(type(scene.chapter), "verdict", lambda _: None)
+            scene.chapter.tried, scene.chapter.complete = True, True
+            scene.turn_to(WHY)
+            assert not progress.done(key)
+            patch.setattr(type(scene.chapter), "verdict", lambda _: 1)
+            scene.turn_to(WHY)
+            assert progress.done(key)
+            patch.setattr(type(scene.chapter), "verdict", lambda _: None)
+            scene.turn_to(WHY)
+            assert progress.done(key), "a later try that answers nothing takes nothing back"
+        driver.app.close()
 
 
 def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_said(open_game: Open, context: Context, monkeypatch):
@@ -214,4 +244,4 @@ def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
     monkeypatch.setattr(chapter_scene, "source_of", lambda _: None)
     driver = open_game(ChapterScene, "neuron")
     driver.top.turn_to(CODE)
-    assert texts.LEARN_NO_SOURCE in written(driver, monkeypatch)
+    assert texts.LESSON_NO_SOURCE in written(driver, monkeypatch)

@@ -3,6 +3,7 @@
 import errno
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +64,11 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
     assert watch._problem().endswith("The last good one flies on.")
     watching.key(pygame.K_m)
     watching.frames(5)
-    assert watch.swarm.landed == 0
+    watch.swarm.landed, watch.swarm.lost = 3, 4
+    path.write_text("def act(o):\n    return 2")
+    watching.wait(lambda: watch.decision.action[0] == 2)
+    watching.frames(1)
+    assert (watch.swarm.landed, watch.swarm.lost) == (0, 0), "another version's flights are not this one's"
 
 
 def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Driver, context: Context):
@@ -117,6 +122,19 @@ def test_it_is_measured_beside_the_others_and_kept(
     assert [each.name for each in measured] == ["pilot", "/scripted", "pilot"]  # the rival once
     assert measured[0].landed == measured[2].landed <= 0.8 < own.rivals(measured)["scripted"].landed
     assert [each.name for each in own.own(measured)] == ["pilot", "pilot"]
+    watching.press_on("pilot")
+    watching.key(pygame.K_RETURN)
+    assert watching.top_name == "WatchScene", "a press on its name leads to what can be done with it"
+    watching.key(pygame.K_o)
+    assert own.GOOD == 0.9
+    for landed, praised in ((0.89, False), (0.9, True), (1.0, True)):
+        shelf.Shelf(context.user_dir).keep(replace(measured[2], landed=landed))
+        watching.top.enter()
+        written.clear()
+        watching.frames(1)
+        assert (texts.PILOTS_GOOD in " ".join(written)) is praised
+    shelf.Shelf(context.user_dir).keep(measured[2])
+    watching.top.enter()
     lost = {texts.PILOTS_LOST[number].format(count=count) for number, count in enumerate(measured[2].lost) if count}
     assert sum(measured[2].lost) == round(20 * (1 - measured[2].landed))
     written.clear()
@@ -139,6 +157,8 @@ def test_flights_that_leave_the_area_are_said_to_have_been_lost_outside(context:
     messages = [each for turn in own.measure(context.user_dir, context.models_dir, path) for each in turn]
     *shares, measured = messages
     assert shares[-1] == 1.0
+    assert shares == sorted(shares)
+    assert 0 < shares[0] < 0.1
     assert measured.landed == 0
     assert measured.lost[5] > measured.lost[6] == 0
 

@@ -56,6 +56,11 @@ def page(open_game, context: Context) -> Driver:
     return driver
 
 
+def test_no_tooltip_repeats_the_words_it_covers(page: Driver):
+    page.app.draw()
+    assert not page.app.canvas.explained
+
+
 def boxes(driver: Driver) -> dict[str, pygame.Rect]:
     return {widget.label: widget.box for widget in driver.form.widgets}
 
