@@ -30,7 +30,7 @@ class Watched:
     """A live run with its hints, as the scene follows it."""
 
     def __init__(self, config: Config, resume: Path | None = None, keep: Path | None = None) -> None:
-        clock = count(0.0, 0.5 * config.num_envs / PACE).__next__
+        clock = count(0.0, config.num_envs / PACE).__next__
         self._run = LanderSession.live(config, 0, keep=keep, resume=resume, clock=clock)
         self.config, self.adviser = config, Adviser(config)
         self.history = History.read(resume) if resume else History()
