@@ -7,7 +7,6 @@ from typing import Final, NamedTuple
 
 import pygame
 
-from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import MUTE, SMALL, TITLE
