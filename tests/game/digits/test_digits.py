@@ -14,7 +14,7 @@ from game.scenes.digits.scene import DigitsScene
 from game.ui.context import Context
 from tests.support.chores import biased_fix
 from tests.support.driver import Driver
-from tests.support.pen import draw, guess, strokes
+from tests.support.pen import draw, guess, pad_of, strokes
 
 Open = Callable[..., Driver]
 
@@ -70,7 +70,7 @@ def test_the_guess_follows_every_event_without_a_frame_in_between(drawing: Drive
 def test_the_drawing_area_is_given_in_pixels_of_the_window(drawing: Driver):
     for size, scale in (((1280, 720), 1.0), ((900, 760), 1.0), ((2560, 1440), 2.0)):
         drawing.resize(size)
-        left, top, width, height = scene(drawing).canvas_rect
+        left, top, width, height = pad_of(drawing)
         assert (left, top) == pytest.approx([scale * each for each in scene(drawing).pad.rect.topleft], abs=1)
         assert width == height == pytest.approx(scale * scene(drawing).pad.rect.width, abs=1)
         drawing.post(pygame.MOUSEBUTTONDOWN, pos=(left + 5, top + 5), button=1)
@@ -83,7 +83,7 @@ def test_a_resized_window_keeps_the_drawing(drawing: Driver):
     before = scene(drawing).probabilities
     drawing.resize((1600, 900))
     assert np.array_equal(scene(drawing).probabilities, before)
-    rect = scene(drawing).canvas_rect
+    rect = pad_of(drawing)
     drawing.app.draw()
     seen = pygame.surfarray.array3d(drawing.app.canvas.surface)[rect.left : rect.right, rect.top : rect.bottom]
     assert (np.abs(seen.astype(int) - INK).max(axis=2) < 8).mean() > 0.05
