@@ -71,13 +71,8 @@ class KnobsPanel:
         return self._run_kind.said(self.settings.holds)[0]
 
     @property
-    def first(self) -> tuple[str, ...]:
-        """Names of the few knobs to begin with; one that has no effect any more gives way to the one that acts."""
-        return tuple(self._acting)
-
-    @property
-    def _acting(self) -> dict[str, str]:
-        """The knobs that act in place of the few to begin with, and those whose names they keep."""
+    def first(self) -> dict[str, str]:
+        """The few knobs to begin with, or those that act in their place, each with the one whose label it has."""
         spent, acting = in_force.idle if (in_force := self.settings.in_force) else {}, dict[str, str]()
         for name in self._run_kind.first:
             acting.setdefault(spent.get(name, name), name)
@@ -87,7 +82,7 @@ class KnobsPanel:
     def key(self) -> Hashable:
         """What decides which rows there are."""
         settings = self.settings
-        return self._page, self.first, settings.holds, settings.changed, self._asks, bool(settings.waiting)
+        return self._page, tuple(self.first), settings.holds, settings.changed, self._asks, bool(settings.waiting)
 
     @property
     def _asks(self) -> bool:
@@ -138,15 +133,15 @@ class KnobsPanel:
     def describe(self, column: Column) -> None:
         """Add the preset's name, and the knobs: few, or a page of all."""
         column.add(self._write_name)
-        acting, kind = self._acting, self._run_kind
+        names, kind = self.first, self._run_kind
         if self.every:
             others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
             column.words([(kind.said((base, ""))[0], partial(self.load, base)) for base in others])
             tabs = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self.pages]
             column.choice("", tabs, self._page, self._turn_page, LABEL)
             page = self.pages[self._page]
-            acting = {name: name for name, each in self._descriptions.items() if each.page == page}
-        for name, called in acting.items():
+            names = {name: name for name, each in self._descriptions.items() if each.page == page}
+        for name, called in names.items():
             column.widget(self._knob(name)).label = self._descriptions[called].label
         self.show()
 
@@ -192,9 +187,7 @@ class KnobsPanel:
         """Write what was refused, or what the knob in focus does, and how to restore it."""
         settings, knob = self.settings, self._form.focused
         if settings.problem:
-            small = cursor.in_style(SMALL, cursor.canvas.palette.warn if cursor.canvas else HUMAN)
-            small.text(settings.problem)
-            cursor.y = small.y
+            cursor.styled(settings.problem, SMALL, cursor.palette.warn)
         elif isinstance(knob, Knob):
             self._write_help_of(knob, cursor)
         elif self.every and not self._asks:
@@ -203,9 +196,7 @@ class KnobsPanel:
     def _write_help_of(self, knob: Knob, cursor: Cursor) -> None:
         cursor.aside(knob.help)
         if knob.description.field == WEIGHTS and self.settings.running:
-            small = cursor.in_style(SMALL, HUMAN)
-            small.text(texts.KNOBS_NEW_PAY)
-            cursor.y = small.y
+            cursor.styled(texts.KNOBS_NEW_PAY, SMALL, HUMAN)
         for heading, advice in zip(texts.KNOB_ADVICE_NAMES, knob.description.advice, strict=False):
             if advice and self.every:
                 cursor.aside(f"{heading}: {advice}")
