@@ -86,7 +86,7 @@ class Days:
             self.problem = texts.FLIGHTS_UNREADABLE.format(path=self._path, reason=error.strerror or error)
             return {}
         if damaged:
-            self.problem = texts.DAYS_DAMAGED.format(count=damaged, path=self._path)
+            self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self._path)
         found: dict[str, Attempt] = {}
         for attempt in attempts:
             before = found.get(attempt.day)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 _MARGIN: Final = 32.0
-_FOOT: Final = 30.0  # from the box to the hints
+_FOOT: Final = 30.0  # of the box, for the hints: nothing of the scene below shows behind them
 
 
 class Dialog(PanelScene):
@@ -63,11 +63,13 @@ class Dialog(PanelScene):
     @property
     def box(self) -> pygame.FRect:
         """The dialog's box, in points."""
-        return self.panel.box.inflate(2 * _MARGIN, 1.5 * _MARGIN)
+        box = self.panel.box.inflate(2 * _MARGIN, 1.5 * _MARGIN)
+        box.height += _FOOT
+        return box
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         box = self.box
-        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom + _FOOT), canvas.view.right - box.left)
+        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom - 20), box.width - 2 * _MARGIN)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._behind.draw(canvas)

@@ -124,12 +124,10 @@ class CopilotPanel:
         if share is not None:
             y = top + _WHY + 104 + box.height - _SIZE[1]
             draw_share(canvas, left, y, _WIDTH, share, flew(network))
-            canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
         title, *lines = self.why
         canvas.text(title, (left, top), colour=NET if self._overridden else INK, room=_WIDTH)
-        canvas.explain((left, top - 16, _WIDTH, 62), texts.EXPLAIN_COPILOT_WHY)
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 

@@ -287,12 +287,8 @@ class TrainingCharts(Charts):
                 place, room = (box.x, y), box.width - 8
                 y = draw_wrapped(canvas, line, place, room, size=_SIZE, colour=MUTE, leading=_LEADING, most=2)
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
-            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
+            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)
-
-
-def _latest(chart: Chart) -> str:
-    return texts.EXPLAIN_CHART_NOW.format(value=chart.latest)
 
 
 def _written(form: str, value: float) -> str:

@@ -150,7 +150,7 @@ class NetworksScene(PanelScene):
             column.aside(_made(run))
             for label, figure in zip(texts.RUN_FIGURES, _figures(run), strict=True):
                 column.pair(label, figure, MUTE)
-            if run.success is not None:
+            if self._is_own and run.success is not None:
                 column.aside(texts.RUN_TESTED)
         saved = time.strftime("%Y-%m-%d %H:%M", time.localtime(run.saved))
         column.aside(texts.RUN_SHIPPED if self._is_shipped(run) else texts.RUN_SAVED.format(when=saved))

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
@@ -14,13 +15,15 @@ from ai.nn import SGD, Adam
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import save
+from ai.training.small_run import Flown as Flight
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.core.source import source_of
+from game.drawing.canvas import Canvas
 from game.explain.figures import decimal, percent, points
 from game.flight.logbook import Records
-from game.scenes.learn import downhill, plane
+from game.scenes.learn import downhill, moment, pictures, plane
 from game.scenes.learn import runs as runs_module
 from game.scenes.learn.backwards import BackwardsChapter
 from game.scenes.learn.chapter import Chapter
@@ -475,3 +478,31 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     assert done() == {"train", "choose", "hand"}, "opened, and not flown yet"
     records.keep(landed(), time.time() + 5, network="mine")
     assert done() == {"train", "choose", "hand", "race"}
+
+
+# Pictures
+
+
+def test_no_lander_is_cut_at_the_upper_edge(made: Made, monkeypatch: pytest.MonkeyPatch):
+    drawn: list[np.ndarray] = []
+    monkeypatch.setattr(pictures, "draw_crowd", lambda _, __, poses, ___: drawn.append(poses))
+    canvas, box = Canvas(pygame.Surface((1280, 720))), pygame.FRect(400, 100, 500, 120)
+    heights = np.arange(0.0, 30.0, 0.5)
+    flown = Flight(heights, np.zeros(60), np.zeros(60, bool), np.zeros(60, np.intp))
+    runs_module.draw_row(canvas, box, flown, 0, count=60)
+    poses = np.stack([np.zeros(60), heights, np.zeros(60)], axis=1)
+    view = pictures.view_in(box, (0.0, 5.0), 40.0, canvas.scale)
+    pictures.draw_landers(canvas, box, view, poses, np.zeros(60, bool), 0)
+    assert len(drawn[0]) > 20
+    assert 10 < len(drawn[1]) < 60
+    assert view.points([(0.0, drawn[1][:, 1].max() + pictures.HEAD)])[0, 1] >= box.top
+    for kind in (MomentChapter, ChoiceChapter):
+        chapter = made(kind)
+        for _ in MOMENTS:
+            with monkeypatch.context() as patch:
+                views: list[Any] = []
+                patch.setattr(moment, "draw_ground", lambda _, __, seen, views=views: views.append(seen))
+                chapter.draw(canvas, box, 1.0)
+            ((_, y),) = views[0].points([chapter.env.position[0]])
+            assert y - 1.3 * np.ptp(views[0].points([(0.0, 0.0), (0.0, 1.0)])[:, 1]) >= box.top
+            chapter.turn()

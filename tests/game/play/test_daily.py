@@ -173,7 +173,7 @@ def test_a_damaged_line_is_counted_and_the_rest_is_read(open_game: Open, context
         file.write('{"day": "2026-99-99"}\nhello\n{"day": "2026-01-02", "outcome": "CRASHED"}\n')
     again = Days(context.user_dir)
     assert [each.outcome for each in again.attempts.values()] == ["LANDED", "CRASHED"]
-    assert again.problem == texts.DAYS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
+    assert again.problem == texts.FLIGHTS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
     driver = open_game(day_scene)
     driver.frames(2)
     assert driver.said == again.problem
