@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Final
 
 import pygame
@@ -105,6 +105,16 @@ def write_marked(cursor: Cursor, sign: Shape, words: str, colour: Colour) -> Non
     if cursor.canvas:
         cursor.canvas.marker(sign, (cursor.left + 5, cursor.y + LEADING * TEXT / 2), 10, colour)
     cursor.styled(words, TEXT, colour, indent=_INDENT, tabular=True)
+
+
+def write_legend(cursor: Cursor, words: Iterable[tuple[str, Colour]]) -> None:
+    """Write words in a line, each after a square of its colour."""
+    if canvas := cursor.canvas:
+        x, y = cursor.left, cursor.y + 15
+        for word, colour in words:
+            canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
+            x += 24 + canvas.text(word, (x + 12, y), size=LABEL, colour=MUTE).width
+    cursor.gap(24)
 
 
 def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:

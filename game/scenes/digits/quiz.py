@@ -61,11 +61,6 @@ class QuizScene(PanelScene):
     def exit(self) -> None:
         self.pad.lift()
 
-    @property
-    def canvas_rect(self) -> pygame.Rect:
-        """The drawing area, in the window's pixels."""
-        return self.context.reading().rect(*self.pad.rect)
-
     def update(self) -> Transition | None:
         self.contest.look()
         return super().update()

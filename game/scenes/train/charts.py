@@ -158,7 +158,7 @@ class TrainingCharts(Charts):
 
     """
 
-    def __init__(self, kinds: Mapping[str, ChartKind] = LANDER_CHARTS, *, more: bool = False) -> None:
+    def __init__(self, kinds: Mapping[str, ChartKind] = LANDER_CHARTS) -> None:
         self._kinds = kinds
         self._all = [
             Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
@@ -167,7 +167,7 @@ class TrainingCharts(Charts):
         ]  # fmt: skip
         super().__init__(self._all)
         self._turn = self.axis = 0
-        self.show(more=more)
+        self.show(more=False)
         self.clear()
 
     def show(self, *, more: bool) -> None:
@@ -209,8 +209,8 @@ class TrainingCharts(Charts):
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
-        contents = (len(history), len(history.validations), shown, self.axis, self.zoom.shown,
-                len(history.setting_changes))  # fmt: skip
+        counts = len(history), len(history.validations), len(history.setting_changes)
+        contents = counts, shown, self.axis, self.zoom.shown
         if self._contents[number] == contents:
             return False
         self._contents[number] = contents

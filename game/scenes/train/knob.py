@@ -175,8 +175,8 @@ class SliderKnob(Knob):
             self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle)
         elif self.idle:
             self._put_beside(canvas, texts.KNOB_IDLE, handle, handle)
-        canvas.text(figure(self.value), (cursor.right, middle + 4.5), size=SMALL, colour=colour, align="right",
-                    tabular=True, room=_FIGURES - 8)  # fmt: skip
+        place, room = (cursor.right, middle + 4.5), _FIGURES - 8
+        canvas.text(figure(self.value), place, size=SMALL, colour=colour, align="right", tabular=True, room=room)
 
     def _put_beside(self, canvas: Canvas, words: str, x: float, handle: float) -> None:
         """Write text over the track, around x as far as there is room, clear of the handle."""

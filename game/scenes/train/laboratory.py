@@ -122,10 +122,8 @@ class Laboratory:
             column.button(word, partial(self._ask, name, word), what, colour=INK)
         for knob in (each for each in LANDERS.knob_descriptions if each.name in self._knobs.first):
             column.aside(texts.LAB_TURN.format(knob=knob.label))
-            column.words([
-                (experiment_word(each, knob), partial(self._try, each, knob))
-                for each in experiments(self._knobs.config, knob.name)
-            ])  # fmt: skip
+            found = experiments(self._knobs.config, knob.name)
+            column.words([(experiment_word(each, knob), partial(self._try, each, knob)) for each in found])
         column.button(texts.BACK, self.close)
 
     def _ask(self, sabotage: str, word: str) -> None:
@@ -179,11 +177,8 @@ class Laboratory:
         for subject, colour in (("came", NET), ("why", INK), ("measured", MUTE)):
             column.text(partial(self._sentence, subject), size=SMALL, colour=colour)
         column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
-        column.words([
-            (texts.LAB_KEEP_RUN, partial(self._leave, False)),
-            (texts.LAB_KEEP_EXPERIMENT, partial(self._leave, True)),
-            (texts.LAB_KNOBS, self.close),
-        ])  # fmt: skip
+        go_on, take = partial(self._leave, False), partial(self._leave, True)
+        column.words([(texts.LAB_KEEP_RUN, go_on), (texts.LAB_KEEP_EXPERIMENT, take), (texts.LAB_KNOBS, self.close)])
 
     def _sentence(self, subject: str) -> str:
         return self.said[subject]

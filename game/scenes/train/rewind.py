@@ -134,10 +134,8 @@ class _Timeline(SliderRow):
     """Slider over the whole run; the arrows go from one kept moment to the next."""
 
     def __init__(self, rewind: Rewind) -> None:
-        super().__init__(
-            texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.go_to_share, step=0.001,
-            figure=rewind.seconds_at,
-        )  # fmt: skip
+        label, share, change = texts.REWIND_TIMELINE, rewind.share, rewind.go_to_share
+        super().__init__(label, share, (0.0, 1.0), change, step=0.001, figure=rewind.seconds_at)
         self._rewind = rewind
 
     def shift(self, direction: int) -> bool:

@@ -7,8 +7,7 @@ import pytest
 from ai.explain.inspection import links
 from ai.training.edits import NetworkEdits
 from game.core import texts
-from game.scenes.train.editing import NetworkEditing
-from game.scenes.train.picking import Link, Unit
+from game.scenes.train.editing import Link, NetworkEditing, Unit
 from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver

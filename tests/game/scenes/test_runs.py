@@ -142,7 +142,7 @@ def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: 
     type_text(driver, "B")
     driver.key(ENTER)
     assert "already" in driver.said
-    assert scene(driver).form.typing
+    assert driver.form.typing
     type_text(driver, "B2")
     driver.key(ENTER)
     assert sorted(run.name for run in three.runs()) == ["B2", "b", "c"]
@@ -150,9 +150,7 @@ def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: 
 
 def test_a_name_can_be_left_as_it_was(open_runs, three: Library):
     driver = open_runs()
-    for leave in (
-        lambda: driver.key(ESCAPE), lambda: click(driver, texts.RUN_LEAVE_NAME), lambda: click_row(driver, 2),
-    ):  # fmt: skip
+    for leave in (lambda: driver.key(ESCAPE), lambda: click(driver, texts.NAMING_LEAVE)):
         driver.key(pygame.K_F2)
         type_text(driver, "other")
         leave()
@@ -168,7 +166,7 @@ def test_the_mouse_accepts_a_name_and_letters_are_no_commands_meanwhile(open_run
     click(driver, texts.RUN_RENAME)
     driver.keys(pygame.K_DELETE, pygame.K_n, pygame.K_SPACE)  # Delete clears the line, and nothing more
     type_text(driver, "new one")
-    click(driver, texts.RUN_KEEP_NAME)
+    click(driver, texts.NAMING_KEEP)
     assert sorted(run.name for run in three.runs()) == ["a", "c", "new one"]
 
 

@@ -14,7 +14,7 @@ import pytest
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
-from ai.training.demonstrations import demonstrate, write
+from ai.training.demonstrations import write
 from ai.training.history import History
 from ai.training.lander_session import TAUGHT
 from game.core import texts
@@ -27,6 +27,7 @@ from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
+from tests.support.demonstrated import demonstrate
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
@@ -43,7 +44,7 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     learn(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
-    assert len(scene.swarm.swarm_state.outcome) == 4
+    assert len(scene.landers.now.swarm_state.outcome) == 4
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(20)

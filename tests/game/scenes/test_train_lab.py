@@ -24,6 +24,7 @@ from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import AHEAD, TrainingRun
 from game.training.run_settings import knob_descriptions
+from game.ui.rows import RunRow
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.recordings import growing, recorded
@@ -249,8 +250,9 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     train.press_on(texts.LAB_KEEP_EXPERIMENT)
     train.frames(14)
     curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
-    assert {row.label for row in scene._legend} <= curves
-    assert len(scene._legend) > 1
+    legend = {row.label for row in train.form.widgets if isinstance(row, RunRow)}
+    assert legend <= curves
+    assert len(legend) > 1
 
 
 def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
@@ -311,13 +313,13 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     train.frames(2)
     scene.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
-    assert scene.moment == run.swarms.moments[0]
-    shown = [swarm.swarm_state.decisions for swarm in scene.split_view.swarms]
-    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.moment).decisions]
+    assert scene.rewind.moment == run.swarms.moments[0]
+    shown = [swarm.swarm_state.decisions for swarm in scene.landers.pair]
+    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.rewind.moment).decisions]
     assert shown[1] < run.twin.swarm_state.decisions
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
-    assert scene.split_view.swarms[1].swarm_state is run.twin.swarm_state
+    assert scene.landers.pair[1].swarm_state is run.twin.swarm_state
 
 
 def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:

@@ -60,9 +60,9 @@ def test_what_is_expected_is_drawn_and_said_in_points_whatever_networks_count_in
 
 def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
     healthy, other = (run_of(PRESETS["modern"], 80.0) for _ in range(2))
-    charts = looked(
-        TrainingCharts(more=True), healthy, Beside([EarlierRun("other", other, 1)], "healthy", paid_otherwise=True)
-    )
+    charts = TrainingCharts()
+    charts.show(more=True)
+    looked(charts, healthy, Beside([EarlierRun("other", other, 1)], "healthy", paid_otherwise=True))
     compared = {chart.label: [run.name for run in chart.runs] for chart in charts.charts}
     for name in ("success", "loss", "epsilon"):
         assert compared[texts.TRAIN_CHARTS[name]] == ["healthy", "other"], name
