@@ -84,7 +84,7 @@ class Canvas:
         width, height = window.get_size()
         scale = max(min(width / VIEW_SIZE[0], height / VIEW_SIZE[1]), 0.01)
         self.size = (max(1, round(VIEW_SIZE[0] * scale)), max(1, round(VIEW_SIZE[1] * scale)))
-        if scale != self.scale:
+        if self.scale and scale != self.scale:  # a window of another size: what was kept for the last one is in the way
             typeface.forget()
             shapes.forget()
         self.scale = scale

@@ -13,6 +13,7 @@ import pygame
 import pytest
 
 from ai.lander.pilots import ScriptedPilot
+from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
 from game.digits import kept
 from game.drawing import typeface
@@ -34,10 +35,13 @@ def networks_unread() -> None:
 
 
 @pytest.fixture(autouse=True)
-def usual_text_size() -> Iterator[None]:
-    """Leave text as large as it was found: its size is the process's, and the last game may have made it larger."""
+def usual_text() -> Iterator[None]:
+    """Leave text as large as it was found, and nothing that was written in another language: both are the process's."""
+    read = texts.MENU
     yield
     typeface.grow(1.0)
+    if texts.MENU is not read:
+        typeface.forget()
 
 
 @pytest.fixture

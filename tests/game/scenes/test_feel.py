@@ -39,14 +39,14 @@ def place(driver: Driver, start: tuple[float, ...]) -> None:
 def crash(driver: Driver) -> None:
     place(driver, FALL)
     while not scene(driver).flight.over:
-        driver.frames(1)
+        driver.skip(1)
     assert scene(driver).flight.outcome is Outcome.CRASHED
 
 
 def frames_to_card(driver: Driver) -> int:
     frames = 0
     while scene(driver).ending.shown < 1:
-        driver.frames(1)
+        driver.skip(1)
         frames += 1
         assert frames < 300
     return frames
@@ -159,8 +159,8 @@ def test_with_reduced_motion_nothing_zooms_pans_or_shakes(game: Driver):
     game.key(pygame.K_r)
     still = scene(game).flown.scenery.view(1.5)
     place(game, FALL)
-    for _ in range(150):
-        game.frames(1)
+    for _ in range(80):
+        game.skip(1)
         assert scene(game).flown.scenery.view(1.5, 0.3) == still
 
 
@@ -181,8 +181,8 @@ def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypat
     game.frames(2)
     jolts = []
     stage = scene(game).flown.scenery.stage
-    for _ in range(60):
-        game.frames(1)
+    for _ in range(40):
+        game.skip(1)
         jolts.append(stage.jolt)
     assert max(jolts) > 1.0
     assert sum(jolt > 0 for jolt in jolts) <= 3

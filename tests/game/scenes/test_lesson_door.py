@@ -36,6 +36,7 @@ def place_of(driver: Driver, slot: int) -> tuple[float, float]:
 
 
 def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
+    """A run that is paused stays so; one that goes on waits for the lesson, and goes on."""
     start(train)
     scene = train.top
     train.press_on(texts.LESSON_WHY)
@@ -48,12 +49,7 @@ def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
     train.frames(5)
     assert train.top is scene, "one lesson is opened once"
     assert scene.run.state is WorkerState.PAUSED
-
-
-def test_a_run_that_goes_on_waits_for_the_lesson_and_goes_on(train: Driver) -> None:
-    start(train)
     toggle(train)
-    scene = train.top
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert scene.run.state is WorkerState.PAUSED

@@ -14,6 +14,7 @@ from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.networks import on_a_link
+from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
 
 
@@ -92,20 +93,8 @@ def test_a_link_is_cut_and_undone(train: Driver) -> None:
     assert not edits(train).holds
 
 
-KEYS = {"confirm": pygame.K_RETURN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT, "back": pygame.K_ESCAPE}
-PAD = {
-    "confirm": pygame.CONTROLLER_BUTTON_A,
-    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT,
-    "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
-    "back": pygame.CONTROLLER_BUTTON_B,
-}
-
-
-@pytest.mark.parametrize("device", ["keys", "pad"])
-def test_a_link_is_picked_and_cut_without_a_mouse(train: Driver, device: str) -> None:
-    def press(name: str) -> None:
-        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
-
+def test_a_link_is_picked_and_cut_without_a_mouse(train: Driver) -> None:
+    press = Player(train, "pad").press
     pointer = next(each for each in train.form.widgets if isinstance(each, VirtualPointer) and each.box.height > 300)
     train.form.focus(pointer)
     press("confirm")
@@ -135,7 +124,7 @@ def test_it_learns_on_when_it_is_asked_to_and_the_swarm_says_how_it_stands(train
     train.frames(3)
     edited = values(train)
     flown = scene.run.swarm_state.decisions
-    train.wait(lambda: scene.run.swarm_state.decisions > flown + 400)
+    train.wait(lambda: scene.run.swarm_state.decisions > flown + 100)
     assert values(train) == edited, "it flies, and does not learn"
     train.key(pygame.K_ESCAPE)
     train.frames(3)

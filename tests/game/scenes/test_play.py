@@ -206,7 +206,7 @@ def files(context) -> dict[str, bytes]:
 def crash(driver: Driver) -> None:
     start_at(driver, 8.0, 2.2, 0.0, -3.0, 0.0, 0.0)
     while play(driver).ending.card is None:
-        driver.frames(1)
+        driver.skip(1)
 
 
 @pytest.mark.parametrize("hand", [StickHolder.HUMAN, StickHolder.NETWORK])

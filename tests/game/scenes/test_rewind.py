@@ -15,8 +15,9 @@ from game.scenes.train.base import CHARTS, INSIDE
 from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
+from tests.support.player import Player
 
-POINTS = 8
+POINTS = 5
 
 
 @pytest.fixture
@@ -42,10 +43,6 @@ def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
     return shown.place(seconds / 2, 0.0)[0], shown.plot.centery
 
 
-def scrubber(driver: Driver) -> Scrubber:
-    return driver.the(Scrubber)
-
-
 def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     scene = driver.top
     run, history = scene.run, scene.run.history
@@ -64,10 +61,9 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     assert scene.charts.charts[0].marker == pytest.approx(seconds)
 
 
-@pytest.mark.parametrize("chart", [0, 3])
-def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver, chart: int) -> None:
+def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver) -> None:
     scene = train.top
-    train.click(halfway(train, chart))
+    train.click(halfway(train, 3))
     train.frames(2)
     moment = scene.moment
     assert moment is not None
@@ -81,7 +77,7 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     assert_all_of_it_is_at(train, moment)
 
 
-def test_a_drag_stays_with_its_chart_and_ends_at_now(train: Driver) -> None:
+def test_a_drag_stays_with_its_chart_and_a_word_or_its_end_leads_to_now(train: Driver) -> None:
     scene = train.top
     x, y = halfway(train, 2)
     train.move((x, y))
@@ -94,58 +90,6 @@ def test_a_drag_stays_with_its_chart_and_ends_at_now(train: Driver) -> None:
     train.move((x + 600, y))
     assert scene.moment is None
     train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y)), button=1)
-
-
-def keys(driver: Driver) -> dict[str, Callable[[], object]]:
-    return {
-        "left": lambda: driver.key(pygame.K_LEFT),
-        "right": lambda: driver.key(pygame.K_RIGHT),
-        "back": lambda: driver.key(pygame.K_ESCAPE),
-    }
-
-
-def gamepad(driver: Driver) -> dict[str, Callable[[], object]]:
-    return {
-        "left": lambda: driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT),
-        "right": lambda: driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT),
-        "back": lambda: driver.button(pygame.CONTROLLER_BUTTON_B),
-    }
-
-
-@pytest.mark.parametrize("device", [keys, gamepad])
-@pytest.mark.parametrize("large", [False, True])
-def test_left_and_right_step_through_the_run_and_back_leads_to_now(
-    train: Driver, device: Callable[[Driver], dict[str, Callable[[], object]]], large: bool
-) -> None:
-    scene, press = train.top, device(train)
-    if large:
-        train.press_on(texts.TRAIN_LOOK[0])
-        train.frames(1)
-    train.form.focus(timeline(train) if large else scrubber(train))
-    moments = []
-    for _ in range(4):
-        press["left"]()
-        moments.append(scene.moment)
-    assert None not in moments
-    assert sorted(set(moments), reverse=True) == moments
-    assert_all_of_it_is_at(train, moments[-1])
-    press["right"]()
-    assert scene.moment == moments[-2]
-    if large:
-        press["back"]()
-        train.frames(1)
-        assert not scene.inside.opened
-        assert scene.moment == moments[-2]
-    press["back"]()
-    train.frames(2)
-    assert train.top is scene
-    assert scene.moment is None
-    assert np.array_equal(scene.inside.network.values, scene.run.network_state.values)
-    assert scene.charts.charts[0].marker is None
-
-
-def test_the_word_leads_back_to_now_and_goes_away(train: Driver) -> None:
-    scene = train.top
     train.click(halfway(train))
     train.frames(2)
     train.click(train.widget(texts.REWIND_NOW).box.center)
@@ -153,8 +97,52 @@ def test_the_word_leads_back_to_now_and_goes_away(train: Driver) -> None:
     assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
 
 
-def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
+@pytest.mark.parametrize("large", [False, True])
+def test_left_and_right_step_through_the_run_and_back_leads_to_now(train: Driver, large: bool) -> None:
+    """Beside the charts by keys, and beside the large network by a gamepad."""
+    scene, player = train.top, Player(train, "pad" if large else "keys")
+    if large:
+        train.press_on(texts.TRAIN_LOOK[0])
+        train.frames(1)
+    train.form.focus(timeline(train) if large else train.the(Scrubber))
+    moments = []
+    for _ in range(4):
+        player.press("left")
+        moments.append(scene.moment)
+    assert None not in moments
+    assert sorted(set(moments), reverse=True) == moments
+    assert_all_of_it_is_at(train, moments[-1])
+    player.press("right")
+    assert scene.moment == moments[-2]
+    if large:
+        player.press("back")
+        train.frames(1)
+        assert not scene.inside.opened
+        assert scene.moment == moments[-2]
+    player.press("back")
+    train.frames(2)
+    assert train.top is scene
+    assert scene.moment is None
+    assert np.array_equal(scene.inside.network.values, scene.run.network_state.values)
+    assert scene.charts.charts[0].marker is None
+
+
+def test_the_charts_are_zoomed_and_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
     scene = train.top
+    zoom = scene.charts.zoom
+    train.move(halfway(train))
+    train.post(pygame.MOUSEWHEEL, x=0, y=2)
+    assert zoom.factor > 1
+    train.frames(30)
+    for chart in scene.charts.charts:
+        assert chart.x_range[1] - chart.x_range[0] < zoom.end
+    train.form.focus(train.the(Scrubber))
+    train.key(pygame.K_0)
+    assert zoom.factor == 1
+    train.key(pygame.K_PLUS)
+    assert zoom.factor > 1
+    train.key(pygame.K_MINUS)
+    assert zoom.factor == 1
     train.press_on(texts.TRAIN_LOOK[0])
     train.frames(1)
     left, right = timeline(train)._track
@@ -208,7 +196,7 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     driver.frames(2)
     scene = driver.top
     driver.click((200, 540))
-    driver.form.focus(scrubber(driver))
+    driver.form.focus(driver.the(Scrubber))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
     assert scene.moment is None
     scene.rewind.go_to(100)
@@ -241,21 +229,3 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
     assert driver.top.moment is None
     assert isinstance(driver.top, TrainScene)
-
-
-def test_the_charts_are_zoomed_by_wheel_and_keys(train: Driver) -> None:
-    scene = train.top
-    zoom = scene.charts.zoom
-    train.move(halfway(train))
-    train.post(pygame.MOUSEWHEEL, x=0, y=2)
-    assert zoom.factor > 1
-    train.frames(30)
-    for chart in scene.charts.charts:
-        assert chart.x_range[1] - chart.x_range[0] < zoom.end
-    train.form.focus(scrubber(train))
-    train.key(pygame.K_0)
-    assert zoom.factor == 1
-    train.key(pygame.K_PLUS)
-    assert zoom.factor > 1
-    train.key(pygame.K_MINUS)
-    assert zoom.factor == 1

@@ -30,13 +30,9 @@ from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
-from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
-from game.ui.rows import ChoiceRow
-from game.ui.widget import Widget
 from tests.support.driver import Driver
+from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
-
-KNOB_PAGE = texts.KNOB_PAGES["learning"]  # one of the pages of knobs
 
 
 def start(driver: Driver) -> None:
@@ -82,20 +78,6 @@ def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
     while training.agent.decisions < checkpoint.decisions:
         training.advance()
     assert np.array_equal(training.agent.network.values, checkpoint.values)
-
-
-def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
-    start(train)
-    scene = train.top
-    train.press_on(texts.TRAIN_SAVE)
-    assert train.top_name == "NameDialog"
-    train.key(pygame.K_RETURN)
-    assert train.top is scene
-    library = Library(tmp_path / "user")
-    train.wait(library.runs)
-    (run,) = library.runs()
-    assert not run.problem
-    assert run.seed == 3
 
 
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
@@ -241,52 +223,8 @@ def test_the_network_is_looked_into_and_left(train: Driver) -> None:
     assert not scene.inside.opened
 
 
-PAD = {
-    "up": pygame.CONTROLLER_BUTTON_DPAD_UP,
-    "down": pygame.CONTROLLER_BUTTON_DPAD_DOWN,
-    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT,
-    "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
-    "confirm": pygame.CONTROLLER_BUTTON_A,
-    "back": pygame.CONTROLLER_BUTTON_B,
-}
-KEYS = {
-    "up": pygame.K_UP,
-    "down": pygame.K_DOWN,
-    "left": pygame.K_LEFT,
-    "right": pygame.K_RIGHT,
-    "confirm": pygame.K_RETURN,
-    "back": pygame.K_ESCAPE,
-}
-
-
-def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
-    scene = train.top
-    form = scene.form
-    train.press_on(texts.TRAIN_MORE_KNOBS[0])
-    train.frames(1)
-    for page, word in enumerate(train.choice(KNOB_PAGE).options):
-        train.choice(KNOB_PAGE).choose(page)
-        train.frames(1)
-        boxes = [widget.box for widget in form.widgets]
-        reached, frontier = {0}, [0]
-        while frontier:
-            index = frontier.pop()
-            # Left and right turn some, and lead nowhere; a choice leads on at its ends.
-            turns = type(form.widgets[index]).shift not in (Widget.shift, ChoiceRow.shift)
-            ways = (UP, DOWN) if turns else (UP, DOWN, LEFT, RIGHT)
-            fresh = {neighbour(boxes, index, way, in_order=True) for way in ways} - reached
-            reached |= fresh
-            frontier += fresh
-        missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]
-        assert missed == [], word
-
-
-@pytest.mark.parametrize("device", ["keys", "pad"])
-def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: str) -> None:
-    def press(name: str) -> None:
-        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
-
-    scene = train.top
+def test_a_run_is_started_named_found_and_left_without_a_mouse(train: Driver) -> None:
+    scene, press = train.top, Player(train, "pad").press
     press("confirm")
     train.wait(lambda: len(scene.run.history) >= 2)
     press("confirm")
@@ -299,6 +237,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     press("confirm")
     assert train.top is scene
     train.wait(scene.library.runs)
+    (run,) = scene.library.runs()
+    assert (run.problem, run.seed) == ("", 3)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-import pygame
 import pytest
 
 from ai.files import read_json
@@ -160,9 +159,14 @@ def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path)
     assert "learning_rate" not in read_json(left.folder / "training.json")["changes"]
 
 
-def test_pause_and_step_are_for_both(train: Driver) -> None:
+def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(train: Driver) -> None:
     split(train)
     run = train.top.run
+    train.top.knobs.turn("discount", 0.9)
+    train.top.knobs.turn("learning_rate", 0.001)
+    train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
+    assert run.config.discount == 0.9
+    assert run.twin.config.learning_rate == 0.3
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(3)
     assert run.twin.state is run.state is WorkerState.PAUSED
@@ -172,27 +176,6 @@ def test_pause_and_step_are_for_both(train: Driver) -> None:
     train.press_on(texts.TRAIN_STEP)
     train.frames(3)
     assert (run.turns, run.twin.turns) == (before[0] + 1, before[1] + 1)
-
-
-def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver) -> None:
-    split(train)
-    run = train.top.run
-    train.top.knobs.turn("discount", 0.9)
-    train.top.knobs.turn("learning_rate", 0.001)
-    train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
-    train.frames(5)
-    assert run.config.discount == 0.9
-    assert run.twin.config.learning_rate == 0.3
-
-
-def test_two_lines_in_every_chart_by_decisions(train: Driver) -> None:
-    split(train)
-    train.frames(60)
-    for chart in train.top.charts.charts:
-        assert len(chart.runs) == 2
-    train.press_on(texts.LAB_KNOBS)
-    train.frames(1)
-    assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
 def test_a_run_that_makes_room_for_an_experiment_is_in_the_list(train: Driver) -> None:
@@ -207,16 +190,8 @@ def test_a_run_that_makes_room_for_an_experiment_is_in_the_list(train: Driver) -
 # The guess
 
 
-@pytest.mark.parametrize("device", ["keys", "mouse", "pad"])
-def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str) -> None:
-    def press(label: str) -> None:
-        widget = train.widget(label)
-        if device == "mouse":
-            train.click(widget.box.center)
-            return
-        train.form.focus(widget)
-        train.key(pygame.K_RETURN) if device == "keys" else train.button(pygame.CONTROLLER_BUTTON_A)
-
+def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
+    press = train.press_on
     scene, laboratory = train.top, train.top.laboratory
     press(texts.TRAIN_EXPERIMENTS)
     train.frames(2)
@@ -277,14 +252,13 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     train.wait(lambda: len(scene.run.history) >= 1)
     assert not np.isfinite(scene.run.history["success"]).any()
     monkeypatch.setattr(inline_worker, "TURNS", 40)
-    for answer in (texts.LAB_KEEP_RUN, texts.LAB_KEEP_EXPERIMENT):
-        split(train)
-        for each in (scene.run, scene.run.twin):
-            train.wait(partial(flown, each))
-        train.press_on(answer)
-        train.frames(30)
-        curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
-        assert {row.label for row in scene._legend} <= curves
+    split(train)
+    for each in (scene.run, scene.run.twin):
+        train.wait(partial(flown, each))
+    train.press_on(texts.LAB_KEEP_EXPERIMENT)
+    train.frames(14)
+    curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
+    assert {row.label for row in scene._legend} <= curves
     assert len(scene._legend) > 1
 
 
@@ -322,15 +296,21 @@ def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     assert texts.LAB_AS_GUESSED in came_words("never", "never")
 
 
-def test_both_shares_are_those_of_the_painted_chart(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_painted_chart(
+    train: Driver, monkeypatch: pytest.MonkeyPatch
+) -> None:
     split(train)
-    train.frames(30)
+    train.frames(14)
     written = words_written(monkeypatch)
-    for _ in range(20):
+    for _ in range(8):
         written.clear()
         train.frames(1)
         shares = [each for each in written if each.endswith(texts.SPLIT_LANDED.format(percent=""))]
         assert shares == [texts.SPLIT_LANDED.format(percent=share) for share in train.top.charts.landed]
+    assert {len(chart.runs) for chart in train.top.charts.charts} == {2}
+    train.press_on(texts.LAB_KNOBS)
+    train.frames(1)
+    assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
 def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -342,7 +322,7 @@ def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch)
     success, epsilon = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon"))
     train.wait(lambda: success.painted_caption and epsilon.painted_caption)
     assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
-    for _ in range(40):  # in each frame, the number that is written is the caption's
+    for _ in range(15):  # in each frame, the number that is written is the caption's
         train.frames(1)
         words = texts.CHART_CAPTIONS["epsilon"]
         captions = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}

@@ -27,7 +27,7 @@ CROSS = {
 }
 
 
-@pytest.fixture(params=["modern", "scripted"])
+@pytest.fixture(params=["modern"])
 def watching(request: pytest.FixtureRequest, open_game: Open, context: Context) -> Driver:
     context.settings.model = request.param
     context.settings_file.save(context.settings)
@@ -72,6 +72,7 @@ def drag(driver: Driver, start: tuple[float, float], end: tuple[float, float]) -
     driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(end), button=1)
 
 
+@pytest.mark.parametrize("watching", ["modern", "scripted"], indirect=True)
 def test_the_mouse_puts_the_lander_elsewhere(watching: Driver):
     watching.key(pygame.K_SPACE)
     before, first = state(watching), scene(watching).decision

@@ -197,15 +197,6 @@ def test_a_preset_is_a_word_and_a_sabotage_waits_under_its_own_name(panel: tuple
     assert scene.knobs.config == MODERN
 
 
-def test_turned_knobs_survive_a_preset_by_undo(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    game.click(at(scene.knob("batch_size"), 0.0))
-    scene.press("Classic")
-    scene.press(texts.KNOBS_UNDO)
-    assert scene.knobs.config == MODERN.changed(batch_size=8)
-    assert scene.knobs.name == "Modern"
-
-
 def test_the_seed_is_a_knob_too_and_takes_a_new_run(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, "lander")

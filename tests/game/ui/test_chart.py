@@ -8,8 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.training.history import History, SettingChange
-from game.core import texts
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.scenes.train.charts import ticks_of
 from game.ui import plotting
@@ -334,25 +332,6 @@ def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_the
     assert chart.runs[0].last() == 2.0, "the logarithm of the last value that has one"
 
 
-def test_a_log_axis_says_so(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    written = words_written(monkeypatch)
-    for log in (False, True):
-        written.clear()
-        chart = Chart((40, 40, 172, 112), "LOSS", log=log)
-        chart.set([Series(np.arange(4.0), [1.0, 10.0, 100.0, 20.0], "this run", smooth=False)], (0, 3))
-        chart.draw(canvas)
-        assert (texts.CHART_LOG[0] in written) is log
-
-
-def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:
-    chart = chart_of(np.arange(20.0))
-    chart.draw(canvas)
-    canvas.attach(pygame.Surface((1920, 1080)))
-    redraws = chart.redraws
-    chart.draw(canvas)
-    assert chart.redraws == redraws + 1
-
-
 def test_the_curve_is_where_its_values_are(drawn: Callable[[Chart], np.ndarray]) -> None:
     chart = chart_of(np.full(100, 25.0), limits=(0.0, 100.0))
     pixels = drawn(chart)
@@ -454,25 +433,6 @@ def test_numbers_are_written_short() -> None:
         (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
     ):  # fmt: skip
         assert plotting.compact(value) == text
-
-
-def test_a_name_in_large_type_leaves_room_for_the_latest_number(canvas: Canvas, monkeypatch) -> None:
-    boxes: dict[str, pygame.FRect] = {}
-    text = Canvas.text
-
-    def noted(sheet: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
-        boxes[string] = text(sheet, string, position, **more)
-        return boxes[string]
-
-    chart = Chart((0, 0, 170, 100), "EXPLORATION ε", read=lambda value: f"{value:.2f}")
-    chart.set([Series(np.arange(2.0), np.full(2, 0.33), "this run")], (0.0, 1.0))
-    typeface.grow(1.25)
-    try:
-        monkeypatch.setattr(Canvas, "text", noted)
-        chart.draw(canvas)
-    finally:
-        typeface.grow(1.0)
-    assert boxes["EXPLORATION ε"].right < boxes["0.33"].left
 
 
 def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
