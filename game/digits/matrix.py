@@ -13,7 +13,7 @@ from game.digits.pictures import picture
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, Colour
 from game.input.controls import Command, translate
-from game.ui.widget import PointsManager, Widget
+from game.ui.widget import Widget
 
 _DIGITS: Final = 10
 _ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
@@ -30,8 +30,8 @@ class ConfusionMatrix(Widget):
 
     """
 
-    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike) -> None:
-        super().__init__(manager, box, "")
+    def __init__(self, box: pygame.typing.RectLike) -> None:
+        super().__init__(box, "")
         self.confusion: Confusion | None = None
         self.cell = (0, 0)
         self._chosen = False  # by the player; until then, the most frequent error is chosen

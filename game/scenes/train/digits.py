@@ -75,7 +75,7 @@ class DigitTrainingScene(TrainingScene):
         change = partial(self.run.ask, "change")
         self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
         self.film = FilterFilm(self.charts)
-        self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
+        self.matrix = ConfusionMatrix((0, 0, 100, 100))
 
     # Rows
 
@@ -120,15 +120,12 @@ class DigitTrainingScene(TrainingScene):
         return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
     def _pointers(self) -> list[Widget]:
-        manager, nowhere = self.form.manager, (0, 0, 1, 1)
-        self._over_charts: list[Widget] = [VirtualPointer(manager, nowhere, self.charts.follow)]
+        self._over_charts: list[Widget] = [VirtualPointer((0, 0, 1, 1), self.charts.follow)]
         if self.view:
-            self._over_charts.append(
-                Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
-            )
+            self._over_charts.append(Scrubber(self.charts, self.film.choose, lambda: None, self.charts.zoom_by))
         elif self._shows_misread:
             if self.matrix not in self.form.widgets:
-                before, self.matrix = self.matrix, ConfusionMatrix(manager, self.matrix.box)
+                before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
                 self.matrix.set(before.confusion)
                 self.matrix.cell = before.cell
             return [*self._over_charts, self.matrix]

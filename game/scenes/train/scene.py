@@ -134,16 +134,14 @@ class TrainScene(TrainingScene):
             widget.relative_rect = widget.rect = pygame.Rect(box)
 
     def _pointers(self) -> list[Widget]:
-        manager, nowhere, charts = self.form.manager, (0, 0, 1, 1), self.charts
+        nowhere, charts = (0, 0, 1, 1), self.charts
         if self.inside.opened:
-            self._laid_pointers: list[Widget] = [
-                VirtualPointer(manager, nowhere, self.inside.follow, hold=texts.EDIT_PICK)
-            ]
+            self._laid_pointers: list[Widget] = [VirtualPointer(nowhere, self.inside.follow, hold=texts.EDIT_PICK)]
         else:
             self._laid_pointers = [
-                VirtualPointer(manager, nowhere, self._choose_lander, hold=texts.LESSON_MARK),
-                VirtualPointer(manager, nowhere, charts.follow),
-                Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by),
+                VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK),
+                VirtualPointer(nowhere, charts.follow),
+                Scrubber(charts, self._scrub, self._duel, charts.zoom_by),
             ]
         return self._laid_pointers
 
@@ -155,7 +153,7 @@ class TrainScene(TrainingScene):
 
     def _describe(self, column: Column) -> None:
         self._legend = []
-        self.rewind.describe(column, self.form.manager, timeline=self.inside.opened)
+        self.rewind.describe(column, timeline=self.inside.opened)
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
@@ -196,7 +194,7 @@ class TrainScene(TrainingScene):
         column.line()
         for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
             press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
-            self._legend.append(column.widget(RunRow(self.form.manager, name, style, press)))
+            self._legend.append(column.widget(RunRow(name, style, press)))
         if not self.run.twin:
             column.aside(texts.COMPARE_REMOVE)
         column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)
