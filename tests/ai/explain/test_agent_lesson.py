@@ -2,6 +2,7 @@
 
 import inspect
 import pickle
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -30,7 +31,7 @@ SMALL = {
 
 def trained(name):
     training = Training(SMALL[name], seed=3, evaluate_every=0)
-    while training.agent.gradient_steps < 40:
+    while training.agent.gradient_steps < 20:
         training.advance()
     return training.agent
 
@@ -58,7 +59,7 @@ def minibatch(before, cell):
 def unobserved(before, cell, agent):
     """The same step by an agent that nobody looks at: it is handed the same minibatch, and learns."""
     cells, _ = minibatch(before, cell)
-    twin = DeepQAgent(9, 6, before.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
+    twin = DeepQAgent(9, 6, before.agent.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
                       symmetry=LANDER_SYMMETRY, replay=Drawn(cells, before.weights))  # fmt: skip
     twin.copy_from(agent)
     twin.learn()
@@ -71,7 +72,7 @@ def case(request):
     before = Before.of(agent, np.random.default_rng(1))
     cell = Transition(*(part[0] for part in agent.replay.at(np.array([7]))))
     state = agent.online.values.copy(), agent.optimizer.state(), agent.rng.bit_generator.state
-    lesson = explain(before, cell, agent)
+    lesson = explain(before, cell)
     return agent, before, cell, lesson, state
 
 
@@ -123,22 +124,28 @@ def test_the_network_is_shown_as_it_ran(case):
 
 
 def test_the_shares_of_all_memories_add_up_to_the_gradient(case):
-    agent, before, cell, lesson, _ = case
-    config, size = before.config, len(before.weights)
+    _, before, cell, lesson, _ = case
+    config, size = before.agent.config, len(before.weights)
     # A minibatch in which the same memory is drawn every time: each brings the same share.
     cells = Transition(*(np.repeat(np.asarray(part)[None], size, axis=0) for part in cell))
-    again = replace(before, cells=cells, weights=np.ones(size, np.float32), config=replace(config, mirror=False))
-    lesson = explain(again, cell, agent)
+    plain = copy(before.agent)
+    plain.config = config.changed(mirror=False)
+    lesson = explain(Before(plain, cells, np.ones(size, np.float32)), cell)
     unclipped = lesson.step.gradient * max(1.0, lesson.step.gradient_length / config.gradient_clip)
     np.testing.assert_allclose(size * lesson.step.share, unclipped, rtol=2e-3, atol=1e-6)
 
 
-def test_the_agent_is_as_before(case):
-    agent, _, _, _, (values, optimizer, rng) = case
+def test_the_agent_is_as_before_and_a_lesson_can_be_sent(case, monkeypatch):
+    agent, before, cell, lesson, (values, optimizer, rng) = case
     np.testing.assert_array_equal(agent.online.values, values)
     for name, kept in agent.optimizer.state().items():
         np.testing.assert_array_equal(kept, optimizer[name])
     assert agent.rng.bit_generator.state == rng
+    again = pickle.loads(pickle.dumps(lesson))
+    np.testing.assert_array_equal(again.step.values_after, lesson.step.values_after)
+    monkeypatch.setattr(learning_step, "MOST_PARAMETERS", len(before.online) - 1)
+    with pytest.raises(ValueError, match="too large"):
+        explain(before, cell, agent)
 
 
 def test_the_lines_are_those_of_the_running_code(case):
@@ -155,16 +162,3 @@ def test_the_lines_are_those_of_the_running_code(case):
             if line.function == "DeepQAgent.gradient_step"}  # fmt: skip
     assert said["errors"].shape == (16,)
     assert said["errors"].case == np.float32(lesson.error)
-
-
-def test_a_lesson_can_be_sent(case):
-    *_, lesson, _ = case
-    again = pickle.loads(pickle.dumps(lesson))
-    np.testing.assert_array_equal(again.step.values_after, lesson.step.values_after)
-
-
-def test_a_network_that_is_too_large_is_refused(case, monkeypatch):
-    agent, before, cell, *_ = case
-    monkeypatch.setattr(learning_step, "MOST_PARAMETERS", len(before.online) - 1)
-    with pytest.raises(ValueError, match="too large"):
-        explain(before, cell, agent)

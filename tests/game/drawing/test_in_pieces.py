@@ -16,7 +16,7 @@ from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.shell.app import App
 from game.world.camera import Camera, CameraTarget
-from game.world.landscape.backdrop import Backdrop, forget_land
+from game.world.landscape.backdrop import Backdrop, landscape
 from game.world.landscape.ground import begin_hills, draw_ground
 from game.world.landscape.themes import LOOKS, MOON
 from tests.support.descent import stand_on
@@ -31,12 +31,12 @@ MOST = A_FRAME + PIECE  # a piece is begun while the frame's share is not used u
 @pytest.fixture
 def in_pieces() -> Iterator[None]:
     """Play as in the game; tests of other things have each picture at once."""
-    forget_land()
+    landscape.cache_clear()
     finish()  # what other tests have left
     spread(A_FRAME)
     yield
     spread(0)
-    forget_land()
+    landscape.cache_clear()
 
 
 def finish() -> list[int]:
@@ -127,7 +127,7 @@ def test_the_window_may_change_its_size_while_its_land_is_painted(open_game: Ope
     driver.app.draw()
     whole = pygame.surfarray.array3d(driver.app.canvas.surface)
     spread(0)
-    forget_land()
+    landscape.cache_clear()
     driver.app.draw()
     assert np.array_equal(whole, pygame.surfarray.array3d(driver.app.canvas.surface))
 

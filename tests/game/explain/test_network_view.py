@@ -4,7 +4,6 @@ import pytest
 
 from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES
-from ai.lander.rules import FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
@@ -16,6 +15,8 @@ from tests.support.written import words_written
 BOX = (868, 420, 384, 180)
 LARGE = (90, 80, 1100, 560)
 OBSERVATION = np.linspace(-1, 1, 9)
+
+FEATURE_NAMES = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
 
 
 @pytest.fixture

@@ -9,11 +9,10 @@ import pytest
 
 from engine import Body
 from game.core import texts
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results
 from game.scenes.physics.scene import GRAVITIES
-from game.world.grip import Grip
 
 MOON, EARTH = GRAVITIES
 # The body that is measured, where it is not the first
@@ -142,7 +141,7 @@ def test_the_panel_shows_law_measurement_and_their_difference():
     results, exhibit = Results(), EXHIBITS["bounce"](EARTH)
     panel = LawPlot(exhibit, "drop", results)
     [(waiting, _)] = panel.sentences("")
-    assert waiting.startswith("Law 3.38 m. It is measured")
+    assert waiting.startswith("Law 3.38 m. Measured")
     result = measured(exhibit)
     results.add(exhibit)
     panel.refresh()

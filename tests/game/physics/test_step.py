@@ -9,10 +9,9 @@ import pytest
 from engine import World
 from engine.contacts import MARGIN
 from game.core.source import source_of
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.step import StepRecord
-from game.world.grip import Grip
 
 EARTH = 9.81
 # Exhibits and steps at which much happens: rest, fall, sliding, rebound, impacts, flight, a push.

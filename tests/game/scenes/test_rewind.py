@@ -16,6 +16,7 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
+from tests.support.small import learn, pause
 
 POINTS = 5
 
@@ -23,10 +24,8 @@ POINTS = 5
 @pytest.fixture
 def train(train: Driver) -> Driver:
     """A run that has learnt for a while, and is paused."""
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: len(train.top.run.history) >= POINTS)
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
+    learn(train, POINTS)
+    pause(train)
     train.top.open(CHARTS)
     train.frames(14)
     return train
@@ -46,9 +45,9 @@ def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
 def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     scene = driver.top
     run, history = scene.run, scene.run.history
-    assert scene.moment == moment
+    assert scene.rewind.moment == moment
     # Everything is one of the messages of the run, the nearest that was kept.
-    assert scene.past_swarm.swarm_state is scene.rewind.swarm_state is run.swarms.nearest(moment)
+    assert scene.landers.past.swarm_state is scene.rewind.swarm_state is run.swarms.nearest(moment)
     assert scene.rewind.swarm_state.decisions == moment
     assert scene.rewind.network_state is run.networks.nearest(moment)
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
@@ -65,7 +64,7 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     scene = train.top
     train.click(halfway(train, 3))
     train.frames(2)
-    moment = scene.moment
+    moment = scene.rewind.moment
     assert moment is not None
     assert 0.2 < moment / scene.run.history["decisions"][-1] < 0.8
     assert_all_of_it_is_at(train, moment)
@@ -73,7 +72,7 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     train.press_on(texts.TRAIN_RESUME)
     train.wait(lambda: len(scene.run.history) > points + 3)
     assert scene.run.state is WorkerState.RUNNING
-    assert scene.moment == moment
+    assert scene.rewind.moment == moment
     assert_all_of_it_is_at(train, moment)
 
 
@@ -82,18 +81,18 @@ def test_a_drag_stays_with_its_chart_and_a_word_or_its_end_leads_to_now(train: D
     x, y = halfway(train, 2)
     train.move((x, y))
     train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
-    first = scene.moment
+    first = scene.rewind.moment
     train.move((x - 20, y - 120))
-    assert scene.moment is not None
+    assert scene.rewind.moment is not None
     assert first is not None
-    assert scene.moment < first
+    assert scene.rewind.moment < first
     train.move((x + 600, y))
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y)), button=1)
     train.click(halfway(train))
     train.frames(2)
     train.click(train.widget(texts.REWIND_NOW).box.center)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
 
 
@@ -108,21 +107,21 @@ def test_left_and_right_step_through_the_run_and_back_leads_to_now(train: Driver
     moments = []
     for _ in range(4):
         player.press("left")
-        moments.append(scene.moment)
+        moments.append(scene.rewind.moment)
     assert None not in moments
     assert sorted(set(moments), reverse=True) == moments
     assert_all_of_it_is_at(train, moments[-1])
     player.press("right")
-    assert scene.moment == moments[-2]
+    assert scene.rewind.moment == moments[-2]
     if large:
         player.press("back")
         train.frames(1)
         assert not scene.inside.opened
-        assert scene.moment == moments[-2]
+        assert scene.rewind.moment == moments[-2]
     player.press("back")
     train.frames(2)
     assert train.top is scene
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     assert np.array_equal(scene.inside.network.values, scene.run.network_state.values)
     assert scene.charts.charts[0].marker is None
 
@@ -151,7 +150,7 @@ def test_the_charts_are_zoomed_and_the_timeline_beside_the_network_is_dragged(tr
     train.frames(2)
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
     train.click((right, timeline(train).box.centery))
-    assert scene.moment is None
+    assert scene.rewind.moment is None
 
 
 def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: Driver) -> None:
@@ -160,12 +159,12 @@ def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: D
     train.frames(5)
     train.click(halfway(train))
     train.frames(2)
-    assert scene.moment is not None
-    assert_all_of_it_is_at(train, scene.moment)
+    assert scene.rewind.moment is not None
+    assert_all_of_it_is_at(train, scene.rewind.moment)
     assert texts.REWIND_AT.split("{")[0] in scene.rewind.words
     train.press_on(texts.TRAIN_START)
     train.frames(2)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     assert scene.run.swarms.moments[-1] < ended
 
 
@@ -178,12 +177,12 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     driver.frames(2)
     driver.press_on(texts.TRAIN_GO_ON)
     scene = driver.top
-    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 500)
+    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 100)
     driver.frames(14)
     scene.rewind.go_to(decisions / 2)
     driver.frames(2)
-    assert scene.rewind.swarm_state is scene.past_swarm.swarm_state is None
-    checkpoint = scene.run.history.checkpoint_at(scene.moment)
+    assert scene.rewind.swarm_state is scene.landers.past.swarm_state is None
+    checkpoint = scene.run.history.checkpoint_at(scene.rewind.moment)
     assert np.array_equal(scene.inside.network.values, checkpoint.values)
     began = scene.run.swarms.begins
     assert began is not None
@@ -198,10 +197,10 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     driver.click((200, 540))
     driver.form.focus(driver.the(Scrubber))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     scene.rewind.go_to(100)
     scene.rewind.go_to_share(0.5)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
 
 
 @pytest.mark.parametrize("values", [np.zeros(0, np.float32), np.zeros(7, np.float32), None])
@@ -220,12 +219,12 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     driver.frames(14)
     driver.top.rewind.go_to(10.0)
     driver.frames(14)
-    assert driver.top.moment == 300
+    assert driver.top.rewind.moment == 300
     assert driver.top.rewind.swarm_state is None
     assert driver.top.inside.network is None or driver.top.inside.shown is None
     driver.top.open(INSIDE)
     driver.frames(3)
     driver.form.focus(timeline(driver))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
-    assert driver.top.moment is None
+    assert driver.top.rewind.moment is None
     assert isinstance(driver.top, TrainScene)

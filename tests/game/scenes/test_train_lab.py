@@ -24,6 +24,7 @@ from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import AHEAD, TrainingRun
 from game.training.run_settings import knob_descriptions
+from game.ui.rows import RunRow
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.recordings import growing, recorded
@@ -178,15 +179,6 @@ def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(tra
     assert (run.turns, run.twin.turns) == (before[0] + 1, before[1] + 1)
 
 
-def test_a_run_that_makes_room_for_an_experiment_is_in_the_list(train: Driver) -> None:
-    scene = train.top
-    train.press_on(texts.TRAIN_START)
-    train.wait(lambda: len(scene.run.history) >= 2)
-    split(train)
-    (kept,) = scene.library.runs()
-    assert kept.decisions > 0
-
-
 # The guess
 
 
@@ -258,8 +250,9 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     train.press_on(texts.LAB_KEEP_EXPERIMENT)
     train.frames(14)
     curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
-    assert {row.label for row in scene._legend} <= curves
-    assert len(scene._legend) > 1
+    legend = {row.label for row in train.form.widgets if isinstance(row, RunRow)}
+    assert legend <= curves
+    assert len(legend) > 1
 
 
 def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
@@ -313,22 +306,6 @@ def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_
     assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
-def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
-    train.press_on(texts.TRAIN_MORE_CHARTS[0])
-    train.press_on(texts.TRAIN_START)
-    scene = train.top
-    painted = {chart.label: chart for chart in scene.charts.charts}
-    success, epsilon = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon"))
-    train.wait(lambda: success.painted_caption and epsilon.painted_caption)
-    assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
-    for _ in range(15):  # in each frame, the number that is written is the caption's
-        train.frames(1)
-        words = texts.CHART_CAPTIONS["epsilon"]
-        captions = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
-        assert epsilon.painted_caption in captions | {words["all"]} or epsilon.caption != epsilon.painted_caption
-
-
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     split(train)
     scene, run = train.top, train.top.run
@@ -336,13 +313,13 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     train.frames(2)
     scene.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
-    assert scene.moment == run.swarms.moments[0]
-    shown = [swarm.swarm_state.decisions for swarm in scene.split_view.swarms]
-    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.moment).decisions]
+    assert scene.rewind.moment == run.swarms.moments[0]
+    shown = [swarm.swarm_state.decisions for swarm in scene.landers.pair]
+    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.rewind.moment).decisions]
     assert shown[1] < run.twin.swarm_state.decisions
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
-    assert scene.split_view.swarms[1].swarm_state is run.twin.swarm_state
+    assert scene.landers.pair[1].swarm_state is run.twin.swarm_state
 
 
 def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,16 +23,17 @@ class Notebook(TrainingRun):
         self.path, self.closing = path, False
 
     def close(self) -> None:
-        self.closing, self._launch = True, None
+        self.closing, self._next = True, None
         if self._worker:
             self._worker.close(5.0)
 
     def note(self, name: str, seconds: float = 0.0, note: str = "") -> str:
-        def launch() -> str:
-            self._worker = Worker(keep, self.path, name, seconds)
-            return note
+        return self.begin((name, seconds, note), 0)
 
-        return self._start(launch)
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
+        name, seconds, note = config
+        self._worker = Worker(keep, self.path, name, seconds)
+        return note
 
     @property
     def lines(self) -> list[str]:

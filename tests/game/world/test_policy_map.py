@@ -14,10 +14,10 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.networks import Policy
+from game.scenes.watch.policy_map import ACTION, COLOURS, OFF, SCORE, PolicyMap
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from game.world.camera import View
-from game.world.policy_map import ACTION, COLOURS, OFF, SCORE, PolicyMap
 from tests.support.driver import Driver
 
 MODELS = Path(__file__).parents[3] / "models" / "lander"
