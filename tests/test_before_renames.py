@@ -24,20 +24,13 @@ DATA = Path(__file__).parent / "data" / "before_renames"
 EXPECTED = json.loads((DATA / "expected.json").read_text(encoding="utf-8"))
 OBSERVATIONS = np.array(EXPECTED["observations"], np.float32)
 RENAMED = {
-    "horizon": "schedule_decisions",
-    "updates": "gradient_steps",
-    "target_rate": "tau",
-    "target_every": "target_update_interval",
-    "warm_up": "learning_starts",
-    "care": "final_touchdown_limits",
-    "weights": "reward_weights",
-}
+    "horizon": "schedule_decisions", "updates": "gradient_steps", "target_rate": "tau", "warm_up": "learning_starts",
+    "target_every": "target_update_interval", "care": "final_touchdown_limits", "weights": "reward_weights",
+}  # fmt: skip
 RENAMED_DIGITS = {
-    "warm_up": "warm_up_epochs",
-    "smoothing": "label_smoothing",
-    "averaging": "ema_decay",
-    "original": "unaugmented",
-}
+    "warm_up": "warm_up_epochs", "smoothing": "label_smoothing", "averaging": "ema_decay", "original": "unaugmented",
+}  # fmt: skip
+MARKS = ["gradient_steps", "target_update_interval", "tau", "reward_weights.time"]
 
 
 def assert_same_settings(config, expected, renamed):
@@ -75,13 +68,10 @@ def test_a_run_resumes_with_the_same_settings_networks_and_counts():
 def test_a_history_shows_the_same_marks_by_the_words_of_now():
     history, expected = History.read(DATA / "run"), EXPECTED["run"]
     assert len(history) == expected["points"]
-    assert history.points[-1].tolist() == expected["last_point"][:9] + expected["last_point"][11:], (
-        "two columns are gone"
-    )
+    assert history.points[-1].tolist() == expected["last_point"][:9] + expected["last_point"][11:]  # two are gone
     assert [each.decisions for each in history.checkpoints] == expected["checkpoints"]
-    names = ["gradient_steps", "target_update_interval", "tau", "reward_weights.time"]
     assert [{**vars(mark), "seconds": 0.0} for mark in history.setting_changes] == [
-        {**then, "name": name, "seconds": 0.0} for then, name in zip(expected["alterations"], names, strict=True)
+        {**then, "name": name, "seconds": 0.0} for then, name in zip(expected["alterations"], MARKS, strict=True)
     ]
 
 
@@ -97,14 +87,7 @@ def test_a_run_of_then_goes_on_and_is_saved_under_the_names_of_now(tmp_path):
     assert (saved["gradient_steps"], saved["reward_weights"]["time"]) == (7, -0.5)
     assert not saved.keys() & RENAMED.keys()
     marks = [mark.name for mark in History.read(tmp_path / "kept").setting_changes]
-    assert marks == [
-        "gradient_steps",
-        "target_update_interval",
-        "tau",
-        "reward_weights.time",
-        "gradient_steps",
-        "reward_weights.time",
-    ]
+    assert marks == [*MARKS, "gradient_steps", "reward_weights.time"]
 
 
 def test_a_digit_run_without_a_state_says_so_and_its_settings_and_network_are_read():
@@ -129,12 +112,9 @@ def test_a_flight_replays_to_the_pose_it_ended_in():
     assert record.entry.landed
 
 
-def test_a_setting_under_both_its_names_is_refused():
+def test_every_former_name_leads_to_one_setting_of_now_and_both_at_once_are_refused():
+    for kind, renamed in ((Config, RENAMED), (DigitConfig, RENAMED_DIGITS)):
+        assert {former: kind.name_now(former) for former in renamed} == renamed
+        assert [name for name in kind().to_json() if kind.name_now(name) != name] == []
     with pytest.raises(ValueError, match="former name: updates"):
         Config.from_json({"updates": 3, "gradient_steps": 4})
-
-
-@pytest.mark.parametrize(("kind", "renamed"), [(Config, RENAMED), (DigitConfig, RENAMED_DIGITS)])
-def test_every_former_name_leads_to_one_setting_of_now(kind, renamed):
-    assert {former: kind.name_now(former) for former in renamed} == renamed
-    assert [name for name in kind().to_json() if kind.name_now(name) != name] == []

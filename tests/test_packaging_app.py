@@ -2,10 +2,8 @@
 
 import ast
 import os
-import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -14,7 +12,6 @@ from game.scenes import ROUTES
 from game.scenes.learn.path import PATH
 from packaging_app import licences, recipe, start
 from packaging_app.archive import needed_glibc, pack
-from packaging_app.extras import add_extras, draw_icons, write_metadata
 
 ROOT = Path(__file__).parents[1]
 
@@ -173,29 +170,3 @@ def test_the_same_files_make_the_same_archive(tmp_path: Path):
     os.utime(folder / "program", (1, 1))
     assert pack(folder, "archive").read_bytes() == first
     assert needed_glibc(folder) == (2, 31)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="the menu of a Linux desktop")
-def test_the_app_puts_itself_into_the_desktops_menu(tmp_path: Path):
-    made, app = tmp_path / "made", tmp_path / "a folder & more"
-    app.mkdir()
-    draw_icons(made)
-    write_metadata(made)
-    add_extras(app, made)
-    subprocess.run(
-        [str(app / "add-to-menu.sh")], env=os.environ | {"XDG_DATA_HOME": str(tmp_path / "data")}, check=True
-    )
-    entry = (tmp_path / "data" / "applications" / "tranquility.desktop").read_text(encoding="utf-8")
-    assert f'Exec="{app}/tranquility"' in entry
-    assert f"Icon={app}/tranquility.png" in entry
-    assert (app / "tranquility.png").read_bytes().startswith(b"\x89PNG")
-    if checker := shutil.which("desktop-file-validate"):
-        subprocess.run([checker, str(tmp_path / "data" / "applications" / "tranquility.desktop")], check=True)
-
-
-def test_the_extra_and_the_documents_name_the_command():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert any(each.startswith("pyinstaller") for each in project["optional-dependencies"]["app"])
-    for document in ("README.md", "docs/app.md"):
-        text = (ROOT / document).read_text(encoding="utf-8")
-        assert "python -m packaging_app" in text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
@@ -207,8 +208,9 @@ def idle(config: Config, decisions: int = 0, episodes: int = 0) -> Mapping[str, 
     moments = ((decisions, episodes), (decisions + 1, episodes + 1))
     for name, instead in _SCHEDULED.items():
         described = type(config).__dataclass_fields__[name].metadata
-        extremes = [config.changed(**{name: described[end]}) for end in ("low", "high")]
-        if all(_scheduled(extremes[0], *moment) == _scheduled(extremes[1], *moment) for moment in moments):
+        low, high = copy(config), copy(config)  # unchecked: a knob's own range makes sense, and this is asked often
+        vars(low)[name], vars(high)[name] = described["low"], described["high"]
+        if all(_scheduled(low, *moment) == _scheduled(high, *moment) for moment in moments):
             found[name] = instead
     if not any(exploration_of_each(config, exploration(config, *moment), config.num_envs).any() for moment in moments):
         found["random_main"] = "epsilon_end"

@@ -204,14 +204,7 @@ def digits(string: str, pixels: float, weight: Weight, colour: Colour) -> list[t
 
 @lru_cache(maxsize=1024)
 def line(
-    string: str,
-    size: float,
-    weight: Weight,
-    colour: Colour,
-    tabular: bool,
-    scale: float,
-    room: float,
-    least: float,
+    string: str, size: float, weight: Weight, colour: Colour, tabular: bool, scale: float, room: float, least: float
 ) -> tuple[list[tuple[pygame.Surface, float, int]], float, float, float]:
     """Return all that is needed to write a text in one look-up: most words on a screen stay from frame to frame.
 

@@ -303,12 +303,11 @@ def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
     canvas.pill(line, colour)
 
 
-def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
+def draw_corner(canvas: Canvas, small: str, large: str) -> None:
     """Draw the flight's name and its goal in the top left corner."""
     canvas = canvas.at(-1, -1)
     canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
     canvas.text(large, (MARGIN, 58), size=TEXT)
-    canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
 
 
 def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float, who: str) -> None:

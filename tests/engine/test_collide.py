@@ -115,7 +115,7 @@ def test_many_poses_at_once():
 
 
 @given(st.integers(0, 10**6), st.floats(-2.5, 2.5), st.floats(-2.5, 2.5), st.floats(-3, 3), st.floats(-3, 3))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_polygons_are_apart_if_and_only_if_brute_force_says_so(seed, x, y, turn_a, turn_b):
     a, b = convex(seed), convex(seed + 1)
     at_a, at_b = pose(0, 0, turn_a), pose(x, y, turn_b)
@@ -129,7 +129,7 @@ def test_polygons_are_apart_if_and_only_if_brute_force_says_so(seed, x, y, turn_
 
 
 @given(st.integers(0, 10**6), st.floats(-2.5, 2.5), st.floats(-2.5, 2.5), st.floats(-3, 3), st.floats(0.1, 1))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_a_polygon_and_a_disc_are_apart_if_and_only_if_brute_force_says_so(seed, x, y, turn, radius):
     a, b = convex(seed), Circle(radius)
     at_a, at_b = pose(0, 0, turn), pose(x, y)

@@ -1,5 +1,7 @@
 """Two bodies meet: momentum, energy, rebound, against closed forms."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -30,39 +32,35 @@ def energy(*bodies):
     )
 
 
-@pytest.mark.parametrize("kind", ["circle", "box"])
-@pytest.mark.parametrize("bounce", [0.0, 0.5, 1.0])
-@pytest.mark.parametrize(("mass_a", "mass_b"), [(1.0, 1.0), (3.0, 1.0), (1.0, 50.0)])
-def test_head_on(kind, bounce, mass_a, mass_b):
-    world = World(gravity=(0.0, 0.0))
-    a = world.add(SHAPES[kind], (-2.0, 0.0), mass=mass_a, restitution=bounce)
-    b = world.add(SHAPES[kind], (2.0, 0.0), mass=mass_b, restitution=bounce)
-    a.velocity, b.velocity = (3.0, 0.0), (-1.0, 0.0)
-    advance(world, 120)
-    common = (mass_a * 3.0 - mass_b) / (mass_a + mass_b)
-    assert a.velocity[0, 0] == pytest.approx(common - bounce * mass_b * 4.0 / (mass_a + mass_b), abs=1e-9)
-    assert b.velocity[0, 0] == pytest.approx(common + bounce * mass_a * 4.0 / (mass_a + mass_b), abs=1e-9)
-    assert a.velocity[0, 1] == pytest.approx(0.0, abs=1e-9)
-    assert a.angular_velocity[0] == pytest.approx(0.0, abs=1e-9)
+def test_head_on():
+    for kind, bounce, (mass_a, mass_b) in product(SHAPES, (0.0, 0.5, 1.0), ((3.0, 1.0), (1.0, 50.0))):
+        world = World(gravity=(0.0, 0.0))
+        a = world.add(SHAPES[kind], (-1.0, 0.0), mass=mass_a, restitution=bounce)
+        b = world.add(SHAPES[kind], (1.0, 0.0), mass=mass_b, restitution=bounce)
+        a.velocity, b.velocity = (3.0, 0.0), (-1.0, 0.0)
+        advance(world, 40)
+        common = (mass_a * 3.0 - mass_b) / (mass_a + mass_b)
+        after = [common - bounce * mass_b * 4.0 / (mass_a + mass_b), common + bounce * mass_a * 4.0 / (mass_a + mass_b)]
+        found = world.state.velocity[0]
+        assert found[:, 0] == pytest.approx(after, abs=1e-9), (kind, bounce, mass_a)
+        assert found[:, 1:] == pytest.approx(np.zeros((2, 2)), abs=1e-9), (kind, bounce, mass_a)
 
 
-@pytest.mark.parametrize("bounce", [0.0, 0.3, 0.6, 0.9, 1.0])
-@pytest.mark.parametrize("gravity", [1.62, 9.81])
-@pytest.mark.parametrize("kind", ["circle", "box"])
-def test_bounce_height_is_e_squared_h(bounce, gravity, kind):
-    world = World(gravity=(0.0, -gravity))
-    world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
-    body = world.add(SHAPES[kind], (0.0, 5.5), restitution=bounce)
-    heights, touched = [], False
-    for _ in range(round(2.3 * 60 * np.sqrt(2 * 5.0 / gravity))):
-        world.step()
-        touched |= world.contacts is not None
-        if touched:
-            heights.append(body.position[0, 1] - 0.5)
-    falls = np.flatnonzero(np.diff(heights) < 0)
-    top = max(heights[: 2 + int(falls[np.argmax(falls > 2)])]) if bounce else max(heights[1:])
-    one_step = np.sqrt(2 * gravity * 5.0) * DT  # how far it moves in the step of the impact
-    assert top == pytest.approx(bounce**2 * 5.0, abs=one_step)
+def test_bounce_height_is_e_squared_h():
+    for kind, bounce, gravity in product(SHAPES, (0.0, 0.3, 0.6, 1.0), (1.62, 9.81)):
+        world = World(gravity=(0.0, -gravity))
+        world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
+        body = world.add(SHAPES[kind], (0.0, 2.5), restitution=bounce)
+        heights, touched = [], False
+        for _ in range(round(2.3 * 60 * np.sqrt(2 * 2.0 / gravity))):
+            world.step()
+            touched |= world.contacts is not None
+            if touched:
+                heights.append(body.position[0, 1] - 0.5)
+        falls = np.flatnonzero(np.diff(heights) < 0)
+        top = max(heights[: 2 + int(falls[np.argmax(falls > 2)])]) if bounce else max(heights[1:])
+        one_step = np.sqrt(2 * gravity * 2.0) * DT  # how far it moves in the step of the impact
+        assert top == pytest.approx(bounce**2 * 2.0, abs=one_step), (kind, bounce, gravity)
 
 
 def test_a_perfectly_elastic_ball_comes_back_to_its_height_again_and_again():
@@ -70,10 +68,10 @@ def test_a_perfectly_elastic_ball_comes_back_to_its_height_again_and_again():
     world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
     ball = world.add(Circle(0.5), (0.0, 4.5), restitution=1.0)
     height = []
-    for _ in range(3000):
+    for _ in range(1500):
         world.step()
         height.append(ball.position[0, 1])
-    assert max(height[2500:]) == pytest.approx(4.5, abs=0.01)
+    assert max(height[1250:]) == pytest.approx(4.5, abs=0.01)
 
 
 @given(st.integers(0, 10**6), st.sampled_from([0.0, 0.3, 1.0]))
@@ -156,18 +154,16 @@ def test_what_a_step_reports_of_an_impact():
     assert contacts.impulse[0, :2].sum() == pytest.approx(6.0)
 
 
-@pytest.mark.parametrize("kind", ["circle", "box"])
-def test_released_from_a_deep_overlap_bodies_part_slowly_and_keep_no_speed(kind):
-    world = World(gravity=(0.0, 0.0))
-    a = world.add(SHAPES[kind], (0.0, 0.0))
-    b = world.add(SHAPES[kind], (0.4, 0.0))
-    for _ in range(120):
-        before = b.position[0, 0] - a.position[0, 0]
-        world.step()
-        assert b.position[0, 0] - a.position[0, 0] - before <= 0.16
-        assert abs(a.velocity).max() < 1e-9
-        assert abs(b.velocity).max() < 1e-9
-    assert b.position[0, 0] - a.position[0, 0] == pytest.approx(1.0, abs=0.006)
+def test_released_from_a_deep_overlap_bodies_part_slowly_and_keep_no_speed():
+    for kind, shape in SHAPES.items():
+        world = World(gravity=(0.0, 0.0))
+        a, b = (world.add(shape, (x, 0.0)) for x in (0.0, 0.4))
+        for _ in range(120):
+            before = b.position[0, 0] - a.position[0, 0]
+            world.step()
+            assert b.position[0, 0] - a.position[0, 0] - before <= 0.16, kind
+            assert abs(world.state.velocity).max() < 1e-9, kind
+        assert b.position[0, 0] - a.position[0, 0] == pytest.approx(1.0, abs=0.006), kind
 
 
 def test_a_slow_touch_does_not_bounce():

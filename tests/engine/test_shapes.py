@@ -11,11 +11,6 @@ from engine.shapes import mass_properties
 finite = st.floats(-20, 20)
 
 
-def regular(corners, radius=1.0):
-    angle = np.arange(corners) * 2 * np.pi / corners
-    return Polygon(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-
-
 @given(st.floats(0.1, 10), st.floats(0.1, 10), finite, finite, st.floats(-7, 7))
 def test_box(width, height, x, y, angle):
     box = Polygon.box(width, height, (x, y), angle)
@@ -25,14 +20,14 @@ def test_box(width, height, x, y, angle):
     assert box.bounding_radius == pytest.approx(np.hypot(width, height) / 2)
 
 
-@pytest.mark.parametrize("corners", [3, 4, 5, 8, 40])
-def test_regular_polygon(corners):
-    shape = regular(corners, radius=2.0)
-    turn = 2 * np.pi / corners
-    area = corners * 4 * np.sin(turn) / 2
-    assert shape.area == pytest.approx(area)
-    assert shape.centroid == pytest.approx(np.zeros(2), abs=1e-12)
-    assert shape.second_moment == pytest.approx(area * 4 * (2 + np.cos(turn)) / 6)
+def test_regular_polygon():
+    for corners in (3, 4, 5, 8, 40):
+        angle, turn = np.arange(corners) * 2 * np.pi / corners, 2 * np.pi / corners
+        shape = Polygon(2.0 * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        area = corners * 4 * np.sin(turn) / 2
+        assert shape.area == pytest.approx(area)
+        assert shape.centroid == pytest.approx(np.zeros(2), abs=1e-12)
+        assert shape.second_moment == pytest.approx(area * 4 * (2 + np.cos(turn)) / 6)
 
 
 def test_circle():
@@ -54,7 +49,7 @@ def test_either_winding_gives_the_same_polygon():
         assert np.linalg.norm(shape.normals, axis=1) == pytest.approx(1.0)
 
 
-def test_what_is_no_convex_polygon_is_refused(subtests):
+def test_what_is_no_convex_polygon_or_circle_is_refused():
     for corners, reason in [
         ([(0, 0), (1, 0)], "three"),
         ([(0, 0), (1, 0), (2, np.nan)], "finite"),
@@ -65,11 +60,8 @@ def test_what_is_no_convex_polygon_is_refused(subtests):
         ([(0, 0), (2, 0), (0.5, 0.5), (0, 2)], "convex"),
         ([(np.cos(a), np.sin(a)) for a in np.arange(5) * 4 * np.pi / 5], "cross"),
     ]:
-        with subtests.test(corners=corners, reason=reason), pytest.raises(ValueError, match=reason):
+        with pytest.raises(ValueError, match=reason):
             Polygon(corners)
-
-
-def test_what_is_no_circle_is_refused():
     for radius, centre in [(0, (0, 0)), (-1, (0, 0)), (np.inf, (0, 0)), (1, (np.nan, 0))]:
         with pytest.raises(ValueError, match="radius above 0"):
             Circle(radius, centre)

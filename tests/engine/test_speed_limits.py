@@ -11,7 +11,7 @@ from tests.support.worlds import advance
 
 
 @given(st.integers(0, 10**6), st.floats(0, 20), st.floats(0, 1))
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 def test_a_craft_thrown_down_neither_sinks_nor_explodes(seed, speed, restitution):
     random = np.random.default_rng(seed)
     world = landers(32, restitution)
@@ -32,12 +32,13 @@ def test_a_craft_thrown_down_neither_sinks_nor_explodes(seed, speed, restitution
         assert (abs(craft.angular_velocity) < 60).all()
 
 
-@pytest.mark.parametrize("speed", [5.0, 10.0, 20.0, 30.0])
-def test_a_ball_does_not_pass_a_floor_of_its_own_size(speed):
-    world = World(gravity=(0.0, 0.0), batch=64)
+def test_a_ball_does_not_pass_a_floor_of_its_own_size():
+    world = World(gravity=(0.0, 0.0), batch=256)
     world.add(Polygon.box(20.0, 0.6), (0.0, 0.0), static=True)
     ball = world.add(Circle(0.3), (0.0, 5.0))
-    ball.set(velocity=(0.0, -speed), position=np.stack([np.zeros(64), 5 + np.arange(64) / 128], axis=1))
+    starts = np.stack([np.zeros(256), 5 + np.arange(256) % 64 / 128], axis=1)
+    speeds = np.repeat([5.0, 10.0, 20.0, 30.0], 64)
+    ball.set(velocity=np.stack([np.zeros(256), -speeds], axis=1), position=starts)
     advance(world, 120)
     assert (ball.position[:, 1] > 0.55).all()
 
@@ -45,7 +46,7 @@ def test_a_ball_does_not_pass_a_floor_of_its_own_size(speed):
 def test_a_lying_craft_stays_in_one_place():
     world = landers(1)
     world.bodies[-1].set(position=(0.0, 2.8), angle=1.3)
-    advance(world, 900)
+    advance(world, 600)
     place = world.state.pose.copy()
-    advance(world, 300)
+    advance(world, 200)
     assert world.state.pose == pytest.approx(place, abs=1e-3)

@@ -1,5 +1,6 @@
 """The game without a window: SDL draws into memory, and a clock of our own ticks 1/60 s a frame."""
 
+import gc
 import os
 
 os.environ["SDL_VIDEODRIVER"] = "dummy"
@@ -25,6 +26,13 @@ from tests.support.written import words_written
 
 pytest.register_assert_rewrite("tests.game.tour.checkers", "tests.game.tour.walks")
 pygame.font.init()  # as long as the tests run, in whatever order
+
+
+@pytest.fixture(autouse=True, scope="module")
+def small_heap() -> Iterator[None]:
+    """Keep what tests leave out of later collections: each game that is closed or left collects once."""
+    yield
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True)

@@ -101,6 +101,6 @@ class Player(Driver):
             for name in held ^ wanted:
                 self._tell(name, down=name in wanted)
             held = wanted
-            self.frames(1)
+            self.skip(1)
         for name in held:
             self.hold(name, down=False)

@@ -16,7 +16,7 @@ from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
 from game.input.controls import Command, translate
 from game.scenes.digits.reader import LEAST_INK, Reading, Verdict, best_two
 from game.training.digit_models import called
-from game.ui.widget import PointsManager, RowWidget, mix
+from game.ui.widget import RowWidget, mix
 
 _DIGITS: Final = 10
 _ROW: Final = 22.0
@@ -38,8 +38,8 @@ class DigitBars(RowWidget):
 
     pad = 2.0
 
-    def __init__(self, manager: PointsManager, press: Callable[[int], Transition | None], digit: int = 0) -> None:
-        super().__init__(manager, (0, 0, 1, 1), texts.HINT_DIGIT)
+    def __init__(self, press: Callable[[int], Transition | None], digit: int = 0) -> None:
+        super().__init__((0, 0, 1, 1), texts.HINT_DIGIT)
         self._on_press, self.digit = press, digit
         self.values = [(0.0, 0.0)] * _DIGITS
         self.shown = [(0.0, 0.0)] * _DIGITS  # eased

@@ -139,7 +139,7 @@ class QuizScene(PanelScene):
         left.aside(texts.QUIZ_LINE)
         left.gap()
         if self._draws:
-            self._pen = left.widget(pen_row(self.form.manager, self.pad, HUMAN))
+            self._pen = left.widget(pen_row(self.pad, HUMAN))
         elif current is None or current.kind == "draw":
             left.picture(side_in, lambda canvas, _: self.pad.draw(canvas, HUMAN))
         else:

@@ -55,7 +55,7 @@ class DigitsScene(PanelScene):
         super().__init__(context)
         self.pad, self.prepared = DrawingPad(), False
         self.live = LiveReading(self.pad, chosen, self._show_bars)
-        self._bars = DigitBars(self.form.manager, self._correct)
+        self._bars = DigitBars(self._correct)
         self._why, self._stages = PaintCache(), PaintCache()
         self._fix_of = -1  # revision of the drawing that was fixed last
         self.fixing = FixRunner(context.user_dir, context.models_dir)
@@ -86,6 +86,11 @@ class DigitsScene(PanelScene):
     def reading(self) -> Reading:
         """The latest reading of the drawing."""
         return self.live.reading
+
+    @property
+    def canvas_rect(self) -> pygame.Rect:
+        """The drawing area, in the window's pixels."""
+        return self.context.reading().rect(*self.pad.rect)
 
     @property
     def probabilities(self) -> Numbers | None:
@@ -125,7 +130,7 @@ class DigitsScene(PanelScene):
         left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
         left.text(texts.DIGITS_TITLE, size=TITLE)
         left.gap()
-        self._pen = left.widget(pen_row(self.form.manager, self.pad))
+        self._pen = left.widget(pen_row(self.pad))
         left.words([
             (texts.DIGITS_UNDO, self.pad.undo),
             (texts.DIGITS_CLEAR, self.pad.clear),
@@ -150,7 +155,7 @@ class DigitsScene(PanelScene):
             (texts.PATCH_WORD, partial(self._ask, "digit_inside")),
         ])  # fmt: skip
         shown = self._bars.shown
-        self._bars = column.widget(DigitBars(self.form.manager, self._correct))
+        self._bars = column.widget(DigitBars(self._correct))
         self._bars.shown = shown
         self._show_bars()
         column.add(self._write_fix)

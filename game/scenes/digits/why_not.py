@@ -77,7 +77,7 @@ class WhyNotScene(PanelScene):
         self._painted, self._maps = PaintCache(), (PaintCache(), PaintCache())
         self._steps = 0
         self.asked = best_two(classifier.predict(self._first)[0])[1]
-        self._bars = DigitBars(self.form.manager, self.ask)
+        self._bars = DigitBars(self.ask)
         self._set_image(self._first)
         self.form.focus(self._bars)
 
@@ -145,7 +145,7 @@ class WhyNotScene(PanelScene):
         answer, evidence = right.beside((22, 33), least=160.0)
         answer.add(self._write_answer)
         eased = self._bars.shown
-        self._bars = answer.widget(DigitBars(self.form.manager, self.ask, self.asked))
+        self._bars = answer.widget(DigitBars(self.ask, self.asked))
         self._bars.shown, self._bars.best = eased, int(self.probabilities.argmax())
         self._bars.values = [(value, 0.0) for value in self.probabilities.tolist()]
         self._describe_evidence(evidence)

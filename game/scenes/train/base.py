@@ -23,8 +23,7 @@ from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout, TrainingStatus, layout
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Part
-from game.ui.form_scene import FormScene
+from game.ui.form import FormScene, Part
 from game.ui.panel import Column, Panel
 from game.ui.widget import Widget
 

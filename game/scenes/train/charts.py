@@ -20,8 +20,8 @@ from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
 from game.core import texts
+from game.drawing import prose
 from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.record import EarlierRun
 from game.training.run_settings import figure, format_changes, label
@@ -284,8 +284,9 @@ class TrainingCharts(Charts):
             y = box.bottom + _DROP
             lines = chart.painted_caption.split("\n")
             for line in lines if box.width >= _WIDE else lines[:1]:
-                place, room = (box.x, y), box.width - 8
-                y = draw_wrapped(canvas, line, place, room, size=_SIZE, colour=MUTE, leading=_LEADING, most=2)
+                for row in prose.lines(line, _SIZE, "regular", box.width - 8, canvas.scale)[:2]:
+                    canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
+                    y += _LEADING
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)

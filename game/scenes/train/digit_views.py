@@ -14,13 +14,13 @@ from game.core import texts
 from game.digits import certainty
 from game.digits.pictures import mosaic, picture, tiling
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.training.run import TrainingRun
 from game.ui.charts import Charts
-from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widget import Widget, mix
 
 _DIGITS: Final = 10
 _ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
@@ -41,8 +41,8 @@ class ConfusionMatrix(Widget):
 
     """
 
-    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike) -> None:
-        super().__init__(manager, box, "")
+    def __init__(self, box: pygame.typing.RectLike) -> None:
+        super().__init__(box, "")
         self.confusion: Confusion | None = None
         self.cell = (0, 0)
         self._chosen = False  # by the player; until then, the most frequent error is chosen
@@ -210,7 +210,7 @@ class FilterFilm:
         moment, (left, top) = self.moment, box.topleft
         if moment is None or not len(moment.images):
             words = texts.DIGIT_RUN_FILTERS_NONE if moment is None else texts.DIGIT_RUN_FILTERS_NO_IMAGE
-            draw_wrapped(canvas, words, (left, top), box.width, size=SMALL, colour=MUTE)
+            Cursor(left, top - SMALL, box.width, canvas.scale, canvas).aside(words)
             return
         words = texts.DIGIT_RUN_FILTERS_AT.format(seconds=f"{moment.seconds:.1f}", steps=moment.step)
         canvas.text(words, (left, top), size=LABEL, colour=MUTE, weight="medium", tabular=True, room=box.width)
@@ -222,11 +222,11 @@ class FilterFilm:
         if not beside:
             return
         scores = [score.success for score in self.history.validations if score.seconds <= moment.seconds]
-        left, y = box.right - beside, top + _HEADING + 14
+        rows = Cursor(box.right - beside, top + _HEADING, beside, canvas.scale, canvas)
         if scores:
-            words = texts.DIGIT_RUN_FILTERS_READ.format(percent=certainty(scores[-1]))
-            y = draw_wrapped(canvas, words, (left, y), beside, size=SMALL, leading=18) + 14
-        draw_wrapped(canvas, texts.DIGIT_RUN_FILTERS_HOW, (left, y), beside, size=SMALL, colour=MUTE, leading=18)
+            rows.styled(texts.DIGIT_RUN_FILTERS_READ.format(percent=certainty(scores[-1])), SMALL)
+            rows.gap(14)
+        rows.aside(texts.DIGIT_RUN_FILTERS_HOW)
 
 
 def _paint(sheet: Canvas, moment: FilterMoment, room: tuple[float, float]) -> None:

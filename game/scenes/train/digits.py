@@ -75,7 +75,7 @@ class DigitTrainingScene(TrainingScene):
         settings = RunSettings(DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
         self.knobs = KnobsPanel(self.form, settings)
         self.film = FilterFilm(self.charts)
-        self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
+        self.matrix = ConfusionMatrix((0, 0, 100, 100))
 
     # Rows
 
@@ -119,14 +119,14 @@ class DigitTrainingScene(TrainingScene):
         return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
     def _pointers(self) -> list[Pointer]:
-        manager, nowhere, charts = self.form.manager, (0, 0, 1, 1), self.charts
-        pointers: list[Pointer] = [(VirtualPointer(manager, nowhere, charts.follow), lambda: charts.box)]
+        charts = self.charts
+        pointers: list[Pointer] = [(VirtualPointer((0, 0, 1, 1), charts.follow), lambda: charts.box)]
         if self.view:
-            scrubber = Scrubber(manager, charts, self.film.choose, lambda: None, charts.zoom_by)
+            scrubber = Scrubber(charts, self.film.choose, lambda: None, charts.zoom_by)
             pointers.append((scrubber, lambda: charts.box))
         elif self._shows_misread:
             if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone
-                before, self.matrix = self.matrix, ConfusionMatrix(manager, self.matrix.box)
+                before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
                 self.matrix.set(before.confusion)
                 self.matrix.cell = before.cell
             pointers.append((self.matrix, lambda: self._matrix))

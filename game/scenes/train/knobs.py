@@ -158,7 +158,7 @@ class KnobsPanel:
         knob = self._knobs.get(name)
         if knob is None or knob not in self._form.widgets:
             description = self._descriptions[name]
-            knob = KINDS[description.kind](self._form.manager, description, self.turn, self._focus_answer)
+            knob = KINDS[description.kind](description, self.turn, self._focus_answer)
             self._knobs[name] = knob
         return knob
 

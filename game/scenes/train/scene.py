@@ -117,15 +117,15 @@ class TrainScene(TrainingScene):
         self.inside.place(place.display)
 
     def _pointers(self) -> list[Pointer]:
-        manager, nowhere, charts = self.form.manager, (0, 0, 1, 1), self.charts
+        nowhere, charts = (0, 0, 1, 1), self.charts
         if self.inside.opened:
-            view = VirtualPointer(manager, nowhere, self.inside.follow, hold=texts.EDIT_PICK)
+            view = VirtualPointer(nowhere, self.inside.follow, hold=texts.EDIT_PICK)
             return [(view, lambda: self.inside.view.box)]
-        landers = VirtualPointer(manager, nowhere, self._choose_lander, hold=texts.LESSON_MARK)
-        scrubber = Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by)
+        landers = VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK)
+        scrubber = Scrubber(charts, self._scrub, self._duel, charts.zoom_by)
         return [
             (landers, lambda: self.landers.box),
-            (VirtualPointer(manager, nowhere, charts.follow), lambda: charts.box),
+            (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
             (scrubber, lambda: charts.charts[0].box.union(charts.charts[1].box)),
         ]
 
@@ -136,7 +136,7 @@ class TrainScene(TrainingScene):
             self.rewind.go_to(self.charts.decisions_at(place))
 
     def _describe(self, column: Column) -> None:
-        self.rewind.describe(column, self.form.manager, timeline=self.inside.opened)
+        self.rewind.describe(column, timeline=self.inside.opened)
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
@@ -177,7 +177,7 @@ class TrainScene(TrainingScene):
         column.line()
         for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
             press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
-            column.widget(RunRow(self.form.manager, name, style, press))
+            column.widget(RunRow(name, style, press))
         if not self.run.twin:
             column.aside(texts.COMPARE_REMOVE)
         column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)

@@ -17,7 +17,7 @@ from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL
 from game.explain.figures import points, what_is_sensed
 from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values
-from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
+from game.scenes.watch.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
 _COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it

@@ -1,11 +1,8 @@
-import errno
-import io
 import json
 import shlex
 import signal
 import subprocess
 import sys
-from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +12,6 @@ import pytest
 import ai.training.loop
 import ai.training.run
 from ai.agent.agent import DeepQAgent
-from ai.agent.storage import write_agent
 from ai.cli.command_line import configured, stoppable
 from ai.training.config import PRESETS
 from ai.training.loop import Training
@@ -36,20 +32,20 @@ def _measured_quickly(monkeypatch):
 
 def test_train_evaluate_resume(tmp_path, capsys):
     run = str(tmp_path / "run")
-    assert main(["train", "--decisions", "400", "--output", run, *SMALL]) == 0
+    assert main(["train", "--decisions", "400", "--output", run, "--validation", "4", *SMALL]) == 0
     assert run in capsys.readouterr().out
-    assert main(["evaluate", "--model", run, "--episodes", "20", "--seed", "3", "--json"]) == 0
+    assert main(["evaluate", "--model", run, "--episodes", "4", "--seed", "3", "--json"]) == 0
     measured = json.loads(capsys.readouterr().out)
     shares = [measured[name] for name in ("success", "crash", "out_of_bounds", "time_out")]
     assert sum(shares) == pytest.approx(1.0)
     assert {"mean_return", "mean_time", "mean_fuel", "episodes"} <= set(measured)
-    assert main(["train", "--decisions", "800", "--resume", run]) == 0
+    assert main(["train", "--decisions", "800", "--resume", run, "--validation", "4"]) == 0
     assert json.loads((tmp_path / "run" / "training.json").read_text())["decisions"] == 800
-    assert main(["evaluate", "--model", run, "--episodes", "20"]) == 0
+    assert main(["evaluate", "--model", run, "--episodes", "2"]) == 0
     assert "success" in capsys.readouterr().out
 
 
-def test_what_cannot_be_done_is_said_in_a_line(capsys, tmp_path, monkeypatch, subtests):
+def test_what_cannot_be_done_is_said_in_a_line(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for arguments, message in [
         ("train --seconds 1", "--output"),
@@ -58,23 +54,17 @@ def test_what_cannot_be_done_is_said_in_a_line(capsys, tmp_path, monkeypatch, su
         ("train --output x --seconds 1 --set warp=9", "warp=9"),
         ("train --output x --seconds 1 --set n_step=0", "n_step lies between"),
         ("train --resume nowhere --seconds 1", "nowhere"),
-        ("evaluate --model nowhere", "nowhere"),
         ("evaluate --model nowhere --episodes 0", "--episodes"),
         ("evaluate --model nowhere --spawn mars", "--spawn is one of"),
         ("train-digits", "--output"),
-        ("train-digits --output x --preset magic", "--preset is one of"),
-        ("train-digits --output x --set warp=9", "warp=9"),
         ("train-digits --output x --epochs 0", "epochs lies between"),
-        ("train-digits --output x --seconds 0", "--seconds lies between"),
-        ("train-digits --resume nowhere", "nowhere"),
         ("evaluate-digits --model nowhere", "nowhere"),
     ]:
-        with subtests.test(arguments):
-            assert main(arguments.split()) == 1
-            stderr = capsys.readouterr().err
-            assert message in stderr
-            assert "Traceback" not in stderr
-            assert not list(tmp_path.iterdir())
+        assert main(arguments.split()) == 1, arguments
+        stderr = capsys.readouterr().err
+        assert message in stderr
+        assert "Traceback" not in stderr
+        assert not list(tmp_path.iterdir()), arguments
 
 
 ENDINGS = [("SIGINT", 0), ("SIGTERM", 128 + 15), ("SIGHUP", 128 + 1)]
@@ -149,7 +139,7 @@ def test_what_can_change_in_a_run_is_changed_when_it_is_resumed_and_the_rest_is_
     run = tmp_path / "run"
     assert main(["train", "--decisions", "80", "--seed", "3", "--output", str(run), "--validation", "4", *SMALL]) == 0
     before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
-    resume = ["train", "--resume", str(run), "--decisions", "160"]
+    resume = ["train", "--resume", str(run), "--decisions", "160", "--validation", "4"]
     for changes, named in (
         (["--set", "hidden=[9]"], "hidden"),
         (["--set", "n_step=3", "--set", "gradient_steps=2"], "n_step"),
@@ -176,49 +166,13 @@ def test_seconds_are_of_the_whole_run_too(tmp_path, capsys):
     assert main(["train", "--seconds", "0.05", "--resume", run]) == 1
     assert "whole run" in capsys.readouterr().err
     seconds = json.loads((tmp_path / "run" / "training.json").read_text())["seconds"]
-    assert main(["train", "--seconds", str(seconds + 0.05), "--resume", run]) == 0
+    assert main(["train", "--seconds", str(seconds + 0.05), "--resume", run, "--validation", "4"]) == 0
     again = json.loads((tmp_path / "run" / "training.json").read_text())["seconds"]
     assert round(seconds + 0.05, 3) <= again < seconds + 60  # a file holds milliseconds
 
 
 def full(*_, **__):
     raise OSError(28, "No space left on device")
-
-
-class AtOnce:
-    """Executor that does its work at once, so that no test depends on when a thread comes to it."""
-
-    def __init__(self, max_workers):
-        assert max_workers == 1
-
-    def submit(self, work):
-        future = Future()
-        try:
-            future.set_result(work())
-        except OSError as error:
-            future.set_exception(error)
-        return future
-
-    def shutdown(self):
-        pass
-
-
-def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(ai.training.run, "ThreadPoolExecutor", AtOnce)
-    monkeypatch.setattr(ai.training.run, "FIRST_SECONDS", 0.0)
-    monkeypatch.setattr(ai.training.run, "KEEP_SECONDS", 0.0)
-    advance = Training.advance
-
-    def filling(training):
-        progress = advance(training)
-        monkeypatch.setattr(ai.training.loop, "write_agent", full if progress.decisions < 160 else save)
-        return progress
-
-    save = write_agent
-    monkeypatch.setattr(Training, "advance", filling)
-    assert main(["train", "--decisions", "240", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]) == 0
-    assert capsys.readouterr().err.count("No space left on device; training goes on") == 1
-    assert DeepQAgent.load(tmp_path / "run" / "last").decisions == 240
 
 
 @pytest.mark.parametrize("trouble", ["full", "not finite", "best"])
@@ -271,38 +225,19 @@ def test_an_earlier_run_is_replaced_only_by_who_says_so(tmp_path, capsys):
         assert main(command) == 1
         assert f"{command[-1]} holds an earlier run: --resume {command[-1]} goes" in capsys.readouterr().err
         assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before
-    assert main(["train", "--decisions", "160", "--resume", str(run), "--output", f"{run}/../run"]) == 0
+    assert (
+        main(["train", "--decisions", "160", "--resume", str(run), "--output", f"{run}/../run", "--validation", "4"])
+        == 0
+    )
     assert main([*train, "--output", str(run), "--seed", "5", "--replace"]) == 0
     assert json.loads((run / "training.json").read_text())["seed"] == 5
 
 
 def test_evaluate_refuses_a_network_of_another_environment_than_it_names(capsys):
     model = str(ROOT / "models" / "lander" / "modern")
-    for env in ("CartPole-v1", "lander-anywhere", "x"):
-        assert main(["evaluate", "--model", model, "--env", env, "--episodes", "1"]) == 1
-        assert capsys.readouterr().err == f"the network in {model} is for lander, not for {env}\n"
+    assert main(["evaluate", "--model", model, "--env", "CartPole-v1", "--episodes", "1"]) == 1
+    assert capsys.readouterr().err == f"the network in {model} is for lander, not for CartPole-v1\n"
     assert main(["evaluate", "--model", model, "--env", "lander", "--episodes", "1"]) == 0
-
-
-class Gone(io.StringIO):
-    """A terminal that is there no more."""
-
-    def write(self, _):
-        raise OSError(errno.EIO, "Input/output error")
-
-    def flush(self) -> None:
-        pass
-
-    def isatty(self) -> bool:
-        return True
-
-
-def test_whoever_does_not_listen_has_the_run_kept_all_the_same(tmp_path, monkeypatch):
-    for number, stream in enumerate((None, Gone())):
-        monkeypatch.setattr(sys, "stderr", stream)
-        run = tmp_path / f"run {number}"
-        assert main(["train", "--decisions", "400", "--validation", "4", "--output", str(run), *SMALL]) == 0
-        assert json.loads((run / "training.json").read_text())["decisions"] == 400
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="file descriptors of a shell")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import json
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -37,57 +38,41 @@ TRAIN_DIGITS = ["train-digits", "--output", "new"]
 EVALUATE = ["evaluate", "--model", MODEL]
 DEEP = "[" * 100_000
 LONG = "x" * 100_000
-NUMBERS = ["-1", "nan", "inf", "-inf", "1e999", "", " ", "1" * 400, "9" * 5_000, "one", "-0x1", "1\N{EN DASH}2"]
+NUMBERS = ["-1", "nan", "-inf", "1e999", "", "9" * 5_000, "1\N{EN DASH}2"]
 COUNTS = ["0", "1.5", *NUMBERS]
 SOME = ["-1", "nan", "1" * 400]  # of options that are read as another one is
-PATHS = ["", " ", "/", "file", "file/x", "loop", "loop/x", "full", "/dev/null", "/dev/null/x", "/proc/nowhere",
-         "x" * 300, "y/" * 3_000, "a\0b", "\ud800", "a\nb", "\x1b[2J", "a\u202eb"]  # fmt: skip
-UNREADABLE = [*PATHS, "nowhere", "deep", "list", "\n\n", "\x1b[2J", "empty"]
-WORDS = ["", "x", LONG, "classic\0", "\N{EN DASH}", "\ud800", "null", "\x1b[2J"]
-ENVS = [
-    *(word for word in WORDS if word != "null"),
-    "a/b/c",
-    "../x",
-    "a:b:c",
-    ":",
-    ":x",
-    "CartPole-v99",
-    "CartPole-v" + "9" * 5_000,
-]
+PATHS = ["", "/", "file", "file/x", "loop/x", "full", "/dev/null/x", "/proc/nowhere", "x" * 300, "a\0b", "\ud800",
+         "\x1b[2J"]  # fmt: skip
+UNREADABLE = ["", "file", "loop", "full", "a\0b", "nowhere", "deep", "list", "\x1b[2J", "empty"]
+WORDS = ["", LONG, "classic\0", "\N{EN DASH}", "\ud800", "\x1b[2J"]
+ENVS = [*WORDS, "a/b/c", "../x", "a:b:c", ":", "CartPole-v99", "CartPole-v" + "9" * 5_000]
 SETTINGS = [
-    "", "=", "=1", "x=1", LONG, "hidden", "env=null", "env=1", "env=[]", "env={}", "env=true", "env=", "hidden=null",
-    "hidden=[]", "hidden=1", "hidden=[[1]]", f"hidden={DEEP}", "hidden=[1e999]", "hidden=[0]", "hidden=[-1]",
-    "hidden={}", f"hidden=[1{'0' * 400}]", "learning_rate=NaN", "learning_rate=Infinity", "learning_rate=-1",
-    "learning_rate=0", "learning_rate=[]", "learning_rate={}", "learning_rate=null", 'learning_rate="1"',
-    "learning_rate=", "n_step=1e999", "n_step=2.0", f"n_step=1{'0' * 400}", f"n_step={'9' * 5_000}",
-    "reward_weights=3", "weights=null", "weights=[]", 'weights={"time": 1e999}', f'weights={{"time": 1{"0" * 400}}}',
-    'weights={"time": null}', 'weights={"x": 1}', 'weights={"time": "x"}', 'weights={"time": NaN}', "optimizer=[]",
-    "optimizer={}", "optimizer=null", "spawn=null", "spawn={}", "batch_size=true", "double=1", "double=null",
-    'weights={"time": -1, "": 2}',
-    "replay_size=0", "num_envs=0", "num_envs=1e9", "frame_skip=-1", "discount=1.1", "epsilon_start=2",
+    "", "=", "=1", "x=1", LONG, "hidden", "env=null", "env=[]", "env=", "hidden=null", "hidden=[]", "hidden=[[1]]",
+    f"hidden={DEEP}", "hidden=[1e999]", "hidden=[0]", f"hidden=[1{'0' * 400}]", "learning_rate=NaN", "learning_rate=0",
+    "learning_rate=[]", 'learning_rate="1"', "learning_rate=", "n_step=1e999", "n_step=2.0", f"n_step={'9' * 5_000}",
+    "reward_weights=3", "weights=null", 'weights={"time": 1e999}', 'weights={"time": null}', 'weights={"x": 1}',
+    'weights={"time": "x"}', "optimizer={}", "spawn=null", "batch_size=true", "double=1", "num_envs=1e9",
+    "discount=1.1",
 ]  # fmt: skip
 DIGIT_SETTINGS = [
-    "", "=", "x=1", "filters=[]", "filters=[8,8,8,8,8,8]", "filters=[1e999]", "kernel=0", "kernel=9e9", "hidden=[]",
-    "hidden=null", f"hidden={DEEP}", "epochs=0", "epochs=1e9", "epochs=1.5", "held_out=-1", "held_out=60000",
-    "batch_size=0", "dropout=1", "dropout=NaN", "cost=null", "cost=[]", "convolutions=2", "augmentation=-1",
-    "augmentation=1e999", "ema_decay=1", "warm_up_epochs=-1", "label_smoothing=2", "activation={}",
-    "final_learning_rate=0",
+    "x=1", "filters=[]", "filters=[8,8,8,8,8,8]", "filters=[1e999]", "kernel=9e9", "hidden=null", f"hidden={DEEP}",
+    "epochs=0", "epochs=1.5", "held_out=60000", "batch_size=0", "dropout=NaN", "cost=[]", "convolutions=2",
+    "augmentation=1e999", "ema_decay=1", "activation={}",
 ]  # fmt: skip
 
 _PYTHONS_WORDS = re.compile(r"__|\b(None|True|False|NoneType|argument after|keyword)\b|[{(]'")
 CASES: list[list[str]] = [
-    *([*TRAIN, "--decisions", value] for value in COUNTS),
+    *([*command, value] for command in ([*TRAIN, "--decisions"], [*TRAIN_DIGITS, "--epochs"]) for value in COUNTS),
     *([*TRAIN, "--seconds", value] for value in ("0", *NUMBERS)),
-    *([*TRAIN_DIGITS, "--epochs", value] for value in COUNTS),
-    *([*TRAIN, "--validation", value] for value in ("0", *SOME)),
-    *([*TRAIN_DIGITS, "--seconds", value] for value in ("0", *SOME)),
+    *([*command, value] for command in ([*TRAIN, "--validation"], [*TRAIN_DIGITS, "--seconds"])
+      for value in ("0", *SOME)),
     *([*command, "--seed", value]
       for command in (TRAIN, TRAIN_DIGITS, EVALUATE, ["copilot-table"]) for value in ("1.5", *SOME)),
     *([*command, "--episodes", value] for command in (EVALUATE, ["copilot-table"])
       for value in ("0", *SOME, "1000000000")),
-    *([*command, "--preset", word] for command in (TRAIN, TRAIN_DIGITS) for word in WORDS),
-    *([*EVALUATE, "--spawn", word] for word in WORDS),
-    *(["physics", "--exhibit", word] for word in (*WORDS, *COUNTS)),
+    *([*command, word] for command in (
+        [*TRAIN, "--preset"], [*TRAIN_DIGITS, "--preset"], [*EVALUATE, "--spawn"], ["physics", "--exhibit"])
+      for word in WORDS),
     *([*TRAIN, "--env", env] for env in ENVS),
     *([*TRAIN, "--set", setting] for setting in SETTINGS),
     *([*TRAIN_DIGITS, "--set", setting] for setting in DIGIT_SETTINGS),
@@ -95,10 +80,10 @@ CASES: list[list[str]] = [
     *([*command, path] for path in UNREADABLE for command in (
         ["train", "--decisions", "100", "--resume"], ["train-digits", "--resume"], ["evaluate", "--model"],
         ["evaluate-digits", "--model"], ["copilot-table", "--model"])),
-    *(["--user-dir", path, "physics"] for path in ("", " ", "/", "loop", "a\0b", "\ud800")),
+    *(["--user-dir", path, "physics"] for path in ("", "/", "loop", "a\0b", "\ud800")),
     *([*command, argument]
       for command in ([], ["train"], ["evaluate"], ["train-digits"], ["physics"], ["copilot-table"])
-      for argument in ("--nonsense", LONG, "\ud800", "--seed")),
+      for argument in ("--nonsense", LONG, "\ud800")),
     ["--windowed", "--fullscreen"], ["train"], ["train-digits"], ["evaluate"], ["evaluate-digits"],
 ]  # fmt: skip
 
@@ -169,18 +154,13 @@ def runs(tmp_path_factory):
     return folder
 
 
-WRONG = [None, "x", [], {}, True, -1, 1.5, float("inf"), float("nan"), 10**400, [[1]], "x" * 10_000]
+WRONG = [None, "x", [], {}, True, -1, 1.5, float("nan"), 10**400]
 WRONG_OF = [
-    *(("lander", name, value) for name in ("seed", "episodes", "landings") for value in WRONG),
+    *(("lander", name, value) for name in ("seed", "episodes") for value in WRONG),
     *(("lander", "seconds", value) for value in WRONG if value != 1.5),
     *(("lander", "best", value) for value in WRONG if value is not None),
-    *(
-        ("lander", f"best.{name}", value)
-        for name in ("success", "mean_return")
-        for value in WRONG
-        if not isinstance(value, int | float) or not abs(value) < 10
-    ),
-    *(("digits", name, value) for name in ("seed", "step", "preset") for value in WRONG),
+    *(("lander", "best.success", value) for value in ("x", None, True, 10**400)),
+    *(("digits", name, value) for name in ("step", "preset") for value in WRONG),
     *(("digits", "changes", value) for value in WRONG if value not in ([], {})),
 ]
 
@@ -188,38 +168,24 @@ WRONG_OF = [
 RESUME = {"lander": ["train", "--decisions", "100", "--resume"], "digits": ["train-digits", "--resume"]}
 
 
-@pytest.fixture
-def not_resumed(refused, runs):
-    """Goes on with a run whose file holds something else, which has to be refused; the file is put back."""
-
-    def not_resumed(kind, content):
-        file = runs / kind / TRAINING_FILE
-        sound = file.read_text()
-        file.write_bytes(content)
-        try:
-            assert TRAINING_FILE in refused([*RESUME[kind], str(runs / kind)])
-        finally:
-            file.write_text(sound)
-
-    return not_resumed
-
-
-def test_a_run_that_says_nonsense_of_itself_is_not_gone_on_with(subtests, not_resumed, runs, monkeypatch):
+def test_a_run_whose_file_says_nonsense_is_not_gone_on_with(subtests, refused, runs, monkeypatch):
     images, labels = np.zeros((200, 28, 28), np.float32), np.zeros(200, np.uint8)
     monkeypatch.setattr("ai.digits.training.load_part", lambda part: (images, labels))
+    contents = [(kind, content.encode("latin-1")) for content in (DEEP, "\xff", "", "null", "[]") for kind in RESUME]
     for kind, name, value in WRONG_OF:
-        with subtests.test(f"{kind}, {name}: {str(value)[:12]}"):
-            described = json.loads((runs / kind / TRAINING_FILE).read_text())
-            place, _, inner = name.rpartition(".")
-            (described[place] if place else described)[inner] = value
-            not_resumed(kind, json.dumps(described).encode())
-
-
-def test_a_run_whose_file_makes_no_sense_is_not_gone_on_with(subtests, not_resumed):
-    for content in (DEEP, "\xff", '{"best": ' + DEEP, "", "null", "3", "[]"):
-        for kind in RESUME:
-            with subtests.test(f"{kind}: {content[:12]!r}"):
-                not_resumed(kind, content.encode("latin-1"))
+        described = json.loads((runs / kind / TRAINING_FILE).read_text())
+        place, _, inner = name.rpartition(".")
+        (described[place] if place else described)[inner] = value
+        contents.append((kind, json.dumps(described).encode()))
+    for kind, content in contents:
+        with subtests.test(kind=kind, content=content[:300]):
+            file = runs / kind / TRAINING_FILE
+            sound = file.read_bytes()
+            file.write_bytes(content)
+            try:
+                assert TRAINING_FILE in refused([*RESUME[kind], str(runs / kind)])
+            finally:
+                file.write_bytes(sound)
 
 
 class Terminal(io.TextIOWrapper):
@@ -238,18 +204,15 @@ STRANGE = "m\N{LATIN SMALL LETTER U WITH DIAERESIS}n\N{EN DASH}\N{GREEK SMALL LE
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="file names are letters there, not bytes")
-@pytest.mark.parametrize("encoding", ["ascii", "cp437", "latin-1", "utf-8"])
-def test_a_terminal_that_knows_few_letters_ends_no_command(encoding, tmp_path, monkeypatch):
+@pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
+def test_a_terminal_that_knows_few_letters_ends_no_command(encoding, tmp_path, runs, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    shutil.copytree(runs / "lander", STRANGE)
     terminal = Terminal(encoding), Terminal(encoding)
     monkeypatch.setattr(sys, "stdout", terminal[0])
     monkeypatch.setattr(sys, "stderr", terminal[1])
-    small = [
-        f"--set={each}"
-        for each in ("num_envs=2", "hidden=[4]", "batch_size=8", "learning_starts=8", "gradient_steps=1")
-    ]
-    assert main(["train", "--decisions", "40", "--validation", "2", "--output", STRANGE, *small]) == 0
-    assert "kept in m" in terminal[0].shown
+    assert main(["train", "--resume", STRANGE, "--decisions", "2"]) == 1
+    assert "this run has taken" in terminal[1].shown
     assert main(["evaluate", "--model", STRANGE, "--episodes", "2"]) == 0  # no landing: dashes for times
     assert "mean time" in terminal[0].shown
     assert main(["evaluate", "--model", f"no {STRANGE}"]) == 1

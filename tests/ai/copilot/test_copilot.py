@@ -117,7 +117,7 @@ def test_hands_off_flies_to_the_likeliest_pad_or_to_the_nearest():
     assert copilot.share(observation, [COAST])[0][0] % 3 == 1
 
 
-def test_the_margin_of_the_guardian_falls_with_assist():
+def test_the_margin_of_the_guardian_falls_with_assist_and_is_in_points_of_reward():
     rng = np.random.default_rng(3)
     values, pilot = rng.normal(scale=0.1, size=(1000, 6)), rng.integers(1, 6, 1000)
     shares = [
@@ -127,12 +127,8 @@ def test_the_margin_of_the_guardian_falls_with_assist():
     assert shares == sorted(shares)
     assert shares[0] == 0.0
     assert shares[-1] > 0.8
-
-
-def test_the_margin_is_in_points_of_reward():
-    values = (0, 0, 0, 4, 0, 0)
     for scale, points in ((1.0, 4.0), (0.01, 400.0), (2.0, 2.0)):
-        copilot = CoPilot(valuer(values), 0.5, "guardian")
+        copilot = CoPilot(valuer((0, 0, 0, 4, 0, 0)), 0.5, "guardian")
         copilot.reward_scale = scale
         assert copilot.share(seen(), [1])[1][0] == (points > GUARDIAN_MARGIN)
 

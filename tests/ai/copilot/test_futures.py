@@ -10,10 +10,9 @@ from ai.cli.copilot import ANYWHERE_MODEL, MODEL
 from ai.copilot import futures
 from ai.copilot.futures import DECISION_STEPS, KEYS, Here, Lookahead, Push
 from ai.lander.anywhere import AnywhereEnv
-from ai.lander.conditions import Conditions
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
-from ai.lander.ground import Ground, Pad, hilly
+from ai.lander.ground import Ground, Pad
 from ai.lander.missions import MISSIONS
 from ai.lander.moment import Moment
 from ai.lander.pilots import ScriptedPilot
@@ -187,19 +186,6 @@ def test_left_and_right_are_alike():
             [bool(plan) for plan in Lookahead(pilot).plans(Moment.of(env), [(0, (left,) * 8), (0, (right,) * 8)])]
         )
     assert ends[0] == ends[1]
-
-
-def test_the_batch_does_not_matter_to_the_flight(agent):
-    env = LanderEnv(9, 3, "rung_1", ground=hilly(np.random.default_rng(2)), conditions=Conditions(wind=0.1))
-    env.reset()
-    scripted = Lookahead(ScriptedPilot())  # it decides alike alone and in a batch
-    asked = [(slot, (KEYS[slot % 6],)) for slot in range(9)]
-    together = scripted.plans(Moment.of(env), asked)
-    for (slot, opening), plan in zip(asked, together, strict=True):
-        (alone,) = scripted.plans(Moment.of(env).take(np.array([slot])), [(0, opening)])
-        assert (alone is None) == (plan is None)
-        if alone:
-            np.testing.assert_array_equal(alone.states, plan.states)
 
 
 def test_a_push_of_shares_has_the_nearest_action():

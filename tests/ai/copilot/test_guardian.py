@@ -125,12 +125,12 @@ def flights(count, **rules):
     return env
 
 
-def guarded(agent, env, ask, assist=GUARD, shares=None):
+def guarded(agent, env, ask, assist=GUARD):
     """Fly guarded; return overridden decisions, and whether a plan was ever held, (n,)."""
     copilot = CoPilot(agent, assist, Mode.GUARDIAN)
     overridden, held = np.zeros(env.num_envs, int), np.zeros(env.num_envs, bool)
     while (flying := env.outcome == Outcome.FLYING).any():
-        decision = copilot.decide(env.observe(), ask(env, copilot), None, shares, env)
+        decision = copilot.decide(env.observe(), ask(env, copilot), env=env)
         overridden += decision.overridden & flying
         held |= decision.held & flying
         env.fly(decision.action, decision.shares)
@@ -145,20 +145,15 @@ def test_no_hand_can_crash_a_flight_while_a_plan_is_held(agent):
         rank = np.where(passes | ~passes.any(axis=1, keepdims=True), rng.random(passes.shape), np.inf)
         return rank.argmin(axis=1)
 
-    weak = np.tile([0.3, 1.0], (1, 1))
-    cases = (
-        ("held right", lambda env, _: np.full(1, 2), GUARD, None),
-        ("an adversary", adversary, GUIDE, None),
-        ("a weak stick", lambda env, _: np.full(1, 5), GUARD, weak),
-    )
-    for what, ask, assist, shares in cases:
+    cases = (("held right", lambda env, _: np.full(1, 2), GUARD), ("an adversary", adversary, GUIDE))
+    for what, ask, assist in cases:
         env = flights(1)
-        _, held = guarded(agent, env, ask, assist, shares)
+        _, held = guarded(agent, env, ask, assist)
         assert held.all(), what
         assert (env.outcome == Outcome.LANDED).all(), what
 
 
-def test_whoever_flies_by_share_alone_is_as_safe(agent):
+def test_whoever_flies_with_a_weak_stick_and_by_share_alone_is_as_safe(agent):
     env, copilot = flights(1), CoPilot(agent, GUARD, "guardian")
     weak = np.tile([0.4, -1.0], (1, 1))
     while (env.outcome == Outcome.FLYING).any():
@@ -186,8 +181,8 @@ def test_a_network_that_does_not_land_never_seizes_the_stick():
         q_values=lambda seen: np.tile(np.arange(6.0), (len(seen), 1)),
         act=lambda seen, *, held=None: np.full(len(seen), 3),
     )
-    env = flights(3)
-    overridden, _ = guarded(upwards, env, lambda env, _: np.full(3, 1))
+    env = flights(1)
+    overridden, _ = guarded(upwards, env, lambda env, _: np.full(1, 1))
     assert overridden.sum() == 0
 
 
@@ -213,7 +208,7 @@ def test_a_plan_is_void_under_other_rules(agent):
         assert np.all(copilot.decide(env.observe(), [1], env=env).held)
 
 
-def test_late_answers_do_not_touch_the_plan(agent):
+def test_late_answers_do_not_touch_the_plan_and_forgetting_a_slot_drops_it(agent):
     env, copilot = flights(2), CoPilot(agent, GUARD, Mode.GUARDIAN)
     known = None
     while (env.outcome == Outcome.FLYING).any():
@@ -221,18 +216,9 @@ def test_late_answers_do_not_touch_the_plan(agent):
         known = [{}, {}]  # none ever comes again
         env.fly(decision.action, decision.shares)
     assert (env.outcome == Outcome.LANDED).all()
-
-
-def test_left_and_right_are_alike(agent):
-    start = np.array([[0.6, 3.3, -0.2, -0.5, 0.1, 0.1]])
-    counts = []
-    for side, key in ((1.0, 1), (-1.0, 2)):
-        env = flights(1)
-        env.place(np.ones(1, bool), start * (side, 1.0, side, 1.0, side, side))
-        overridden, _ = guarded(agent, env, lambda env, _, key=key: np.full(1, key))
-        assert env.outcome[0] == Outcome.LANDED, side
-        counts.append(overridden[0] / env.steps[0])
-    assert abs(counts[0] - counts[1]) < 0.1
+    copilot.decide(flights(2).observe(), [3, 3], env=flights(2))
+    copilot.forget(np.array([True, False]))
+    assert [guardian.plan is None for guardian in copilot.guardians] == [True, False]
 
 
 def test_all_six_are_reported_and_what_ended_has_no_future(agent):
@@ -253,10 +239,3 @@ def test_an_environment_of_another_size_or_rhythm_is_refused(agent):
             copilot.decide(env.observe()[:1], [1], env=env)
     with pytest.raises(ValueError, match="shares"):
         copilot.share(flights(1).observe(), [1], shares=np.zeros((1, 3)))
-
-
-def test_forgetting_a_slot_drops_its_plan(agent):
-    env, copilot = flights(2), CoPilot(agent, GUARD, Mode.GUARDIAN)
-    copilot.decide(env.observe(), [3, 3], env=env)
-    copilot.forget(np.array([True, False]))
-    assert [guardian.plan is None for guardian in copilot.guardians] == [True, False]

@@ -21,13 +21,11 @@ def dreamt(classifier, digit, steps, **options):
     return dream
 
 
-@pytest.mark.parametrize("calm", [0.0, 0.7])
-def test_the_network_comes_to_read_the_digit_it_dreams_of(classifier, calm):
-    dream = dreamt(classifier, 3, 40, calm=calm)
-    assert (
-        dream.probabilities[3] > 0.5 > ActivationMaximisation(classifier, 3, np.random.default_rng(0)).probabilities[3]
-    )
-    np.testing.assert_array_equal(dream.probabilities, classifier.predict(dream.image)[0])
+def test_the_network_comes_to_read_the_digit_it_dreams_of(classifier):
+    for calm in (0.0, 0.7):
+        dream = dreamt(classifier, 3, 40, calm=calm)
+        assert dream.probabilities[3] > 0.5 > dreamt(classifier, 3, 0).probabilities[3]
+        np.testing.assert_array_equal(dream.probabilities, classifier.predict(dream.image)[0])
 
 
 def test_a_calm_dream_has_no_more_ink_than_a_digit_and_a_wild_one_has(classifier):
@@ -54,8 +52,10 @@ def test_the_gradient_is_that_of_what_is_to_grow(classifier):
     assert rise == pytest.approx(np.linalg.norm(gradient), rel=0.03)
 
 
-def test_it_begins_with_a_drawing_and_comes_to_an_end():
+def test_it_begins_with_any_drawing_and_comes_to_an_end():
     classifier = DigitClassifier.load(MODELS / "classic")
+    for start in (np.full((28, 28), np.nan), np.full((28, 28), 1e9), np.zeros((28, 28))):
+        assert np.isfinite(dreamt(classifier, 0, 5, start=start).image).all()
     drawing = np.zeros((28, 28), np.float32)
     drawing[4:24, 13:16] = 1
     dream = ActivationMaximisation(classifier, 1, np.random.default_rng(0), start=drawing)
@@ -64,14 +64,5 @@ def test_it_begins_with_a_drawing_and_comes_to_an_end():
         dream.advance()
     assert dream.step == STEPS
     assert 0 <= dream.image.min() <= dream.image.max() <= 1
-
-
-@pytest.mark.parametrize("start", [np.full((28, 28), np.nan), np.full((28, 28), 1e9), np.zeros((28, 28))])
-def test_it_makes_do_with_any_image(start):
-    dream = dreamt(DigitClassifier.load(MODELS / "classic"), 0, 5, start=start)
-    assert np.isfinite(dream.image).all()
-
-
-def test_there_is_no_eleventh_digit():
     with pytest.raises(ValueError, match="from 0 to 9"):
-        ActivationMaximisation(DigitClassifier.load(MODELS / "classic"), 10, np.random.default_rng(0))
+        ActivationMaximisation(classifier, 10, np.random.default_rng(0))

@@ -1,6 +1,7 @@
 """Training of a digit network: a run, its settings, and what it saves."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,15 +37,11 @@ def test_a_run_learns_and_reports_how_it_stands(data):
     assert progress[0].learning_rate < progress[8].learning_rate > progress[-1].learning_rate
 
 
-def test_live_knobs_are_taken_over_and_the_others_stay(data):
+def test_live_knobs_are_taken_over_and_the_others_stay_and_held_out_images_are_never_learnt_from(data):
     training = DigitTraining(SMALL, data=data)
     training.apply_live(SMALL.changed(learning_rate=1e-5, final_learning_rate=1e-6, hidden=(3,)))
     assert training.advance().learning_rate <= 1e-5
     assert training.config.hidden == SMALL.hidden
-
-
-def test_held_out_images_are_never_learnt_from(data):
-    training = DigitTraining(SMALL, data=data)
     assert len(training.images) == 500
     learnt = {image.tobytes() for image in training.images}
     assert not [image for image in training.held_images if image.tobytes() in learnt]
@@ -86,23 +83,18 @@ def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
 def test_a_gradient_that_is_not_finite_ends_the_run(data):
     training = DigitTraining(SMALL, data=data)
     training.classifier.network.values[:] = np.nan
-    with pytest.raises(
-        FloatingPointError, match="the cost was not finite at learning step 1; most likely the learning rate"
-    ):
+    with pytest.raises(FloatingPointError, match=r"the cost was not finite at learning step 1; .* learning rate"):
         training.advance()
 
 
-@pytest.mark.parametrize("preset", DIGIT_PRESETS)
-def test_presets_build_networks_of_ten_outputs(preset):
-    network = build_digit_network(DIGIT_PRESETS[preset], np.random.default_rng(0))
-    assert DigitClassifier(network).predict(np.zeros((2, 28, 28))).shape == (2, 10)
-
-
-def test_classic_is_the_network_as_first_described():
-    network = build_digit_network(DIGIT_PRESETS["classic"], np.random.default_rng(0))
-    assert [layer.outputs for layer in network.layers if layer.outputs] == [100, 50, 10]
-    assert [layer.activation.name for layer in network.layers if hasattr(layer, "activation")] == ["tanh"] * 3
-    assert network.cost.name == "mse"
+def test_presets_build_networks_of_ten_outputs_and_classic_is_the_network_as_first_described():
+    networks = {name: build_digit_network(preset, np.random.default_rng(0)) for name, preset in DIGIT_PRESETS.items()}
+    for network in networks.values():
+        assert DigitClassifier(network).predict(np.zeros((2, 28, 28))).shape == (2, 10)
+    layers: Any = networks["classic"].layers
+    assert [layer.outputs for layer in layers if layer.outputs] == [100, 50, 10]
+    assert [layer.activation.name for layer in layers if hasattr(layer, "activation")] == ["tanh"] * 3
+    assert networks["classic"].cost.name == "mse"
 
 
 def test_settings_are_checked_and_survive_json():
@@ -115,13 +107,10 @@ def test_settings_are_checked_and_survive_json():
         assert item.metadata["group"] in ("learning", "network", "images")
 
 
-@pytest.mark.parametrize("few_values", [{"batch_size": 5000}, {"batch_size": 100, "filters": (256,), "kernel": 1}])
-def test_a_batch_cannot_ask_for_more_memory_than_there_is(few_values):
-    with pytest.raises(ValueError, match="batch_size is at most"):
-        DigitConfig(**few_values)
+def test_a_batch_cannot_ask_for_more_memory_than_there_is_and_windows_have_to_fit():
+    for wrong in ({"batch_size": 5000}, {"batch_size": 100, "filters": (256,), "kernel": 1}):
+        with pytest.raises(ValueError, match="batch_size is at most"):
+            DigitConfig(**wrong)
     DIGIT_PRESETS["classic"].changed(batch_size=5000)
-
-
-def test_windows_that_do_not_fit_are_refused_before_there_is_a_run():
     with pytest.raises(ValueError, match="a kernel of 9 does not fit"):
         DigitConfig(filters=(16, 16, 16), kernel=9)

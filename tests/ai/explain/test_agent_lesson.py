@@ -31,7 +31,7 @@ SMALL = {
 
 def trained(name):
     training = Training(SMALL[name], seed=3, evaluate_every=0)
-    while training.agent.gradient_steps < 40:
+    while training.agent.gradient_steps < 20:
         training.advance()
     return training.agent
 
@@ -135,12 +135,17 @@ def test_the_shares_of_all_memories_add_up_to_the_gradient(case):
     np.testing.assert_allclose(size * lesson.step.share, unclipped, rtol=2e-3, atol=1e-6)
 
 
-def test_the_agent_is_as_before(case):
-    agent, _, _, _, (values, optimizer, rng) = case
+def test_the_agent_is_as_before_and_a_lesson_can_be_sent(case, monkeypatch):
+    agent, before, cell, lesson, (values, optimizer, rng) = case
     np.testing.assert_array_equal(agent.online.values, values)
     for name, kept in agent.optimizer.state().items():
         np.testing.assert_array_equal(kept, optimizer[name])
     assert agent.rng.bit_generator.state == rng
+    again = pickle.loads(pickle.dumps(lesson))
+    np.testing.assert_array_equal(again.step.values_after, lesson.step.values_after)
+    monkeypatch.setattr(learning_step, "MOST_PARAMETERS", len(before.agent.online.values) - 1)
+    with pytest.raises(ValueError, match="too large"):
+        explain(before, cell)
 
 
 def test_the_lines_are_those_of_the_running_code(case):
@@ -157,16 +162,3 @@ def test_the_lines_are_those_of_the_running_code(case):
             if line.function == "DeepQAgent.gradient_step"}  # fmt: skip
     assert said["errors"].shape == (16,)
     assert said["errors"].case == np.float32(lesson.error)
-
-
-def test_a_lesson_can_be_sent(case):
-    *_, lesson, _ = case
-    again = pickle.loads(pickle.dumps(lesson))
-    np.testing.assert_array_equal(again.step.values_after, lesson.step.values_after)
-
-
-def test_a_network_that_is_too_large_is_refused(case, monkeypatch):
-    _, before, cell, *_ = case
-    monkeypatch.setattr(learning_step, "MOST_PARAMETERS", len(before.agent.online.values) - 1)
-    with pytest.raises(ValueError, match="too large"):
-        explain(before, cell)

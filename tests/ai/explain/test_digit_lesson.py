@@ -20,7 +20,7 @@ def data():
 
 @pytest.fixture(params=["modern", "classic"])
 def training(request, data):
-    config = replace(DIGIT_PRESETS[request.param], batch_size=8, held_out=12)
+    config = replace(DIGIT_PRESETS[request.param], batch_size=4, held_out=12)
     training = DigitTraining(config, 1, data)
     for _ in range(3):
         training.advance()
@@ -28,7 +28,7 @@ def training(request, data):
 
 
 def test_the_step_is_the_one_the_run_takes_next(training):
-    lesson = explain_digit(training, 5)
+    lesson = explain_digit(training, 3)
     before = training.classifier.network.values.copy()
     np.testing.assert_array_equal(lesson.step.values_before, before)
     progress = training.advance()
@@ -41,12 +41,12 @@ def test_the_step_is_the_one_the_run_takes_next(training):
 
 
 def test_image_answer_and_target_belong_together(training):
-    lesson = explain_digit(training, 5)
+    lesson = explain_digit(training, 3)
     assert lesson.image.shape == (28, 28)
-    assert int(lesson.target.argmax()) == lesson.labels[5]
+    assert int(lesson.target.argmax()) == lesson.labels[3]
     np.testing.assert_array_equal(lesson.step.activations[-1], lesson.outputs)
     cost = training.classifier.network.cost
-    expected = cost.derivative(lesson.outputs[None], lesson.target[None])[0] / 8
+    expected = cost.derivative(lesson.outputs[None], lesson.target[None])[0] / 4
     np.testing.assert_allclose(lesson.derivative, expected, rtol=1e-4, atol=1e-8)
     np.testing.assert_allclose(lesson.probabilities_before, training.classifier.predict(lesson.image)[0], rtol=1e-6)
     ran = {line.function for line in (*lesson.step.lines, *lesson.lines)}

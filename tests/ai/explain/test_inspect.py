@@ -23,23 +23,22 @@ def network_of(**options: object) -> NeuralNetwork:
     return build_network(9, 6, config, np.random.default_rng(0))
 
 
-def test_traces_end_with_what_the_network_answers_and_links_lead_there(subtests) -> None:
+def test_traces_end_with_what_the_network_answers_and_links_lead_there() -> None:
     for dueling, normalised, activation in product((False, True), (False, True), ("relu", "tanh", "leaky_relu")):
         network = network_of(dueling=dueling, layer_normalisation=normalised, activation=activation)
-        with subtests.test(dueling=dueling, normalised=normalised, activation=activation):
-            stages = traces(network, OBSERVATION)
-            assert [len(stage) for stage in stages] == [9, 5, 7, 6]
-            np.testing.assert_array_equal(stages[0], OBSERVATION)
-            np.testing.assert_allclose(stages[-1], network.predict(OBSERVATION), rtol=1e-5)
-            assert (stages[1] >= 0).all() or activation != "relu"
-            found = links(network)
-            assert [(*link.weights.shape, *link.bias.shape) for link in found] == [(9, 5, 5), (5, 7, 7), (7, 6, 6)]
-            np.testing.assert_allclose(stages[-2] @ found[-1].weights + found[-1].bias, stages[-1], atol=1e-6)
-            network.gradients[:] = -2 * network.values  # of the last way back
-            for link in links(network):
-                np.testing.assert_allclose(link.gradient, -2 * link.weights, rtol=1e-5)
-            for rows, first in zip(traces(network, np.stack([OBSERVATION, -OBSERVATION])), stages, strict=True):
-                np.testing.assert_allclose(rows[0], first, atol=1e-6)
+        stages = traces(network, OBSERVATION)
+        assert [len(stage) for stage in stages] == [9, 5, 7, 6]
+        np.testing.assert_array_equal(stages[0], OBSERVATION)
+        np.testing.assert_allclose(stages[-1], network.predict(OBSERVATION), rtol=1e-5)
+        assert (stages[1] >= 0).all() or activation != "relu"
+        found = links(network)
+        assert [(*link.weights.shape, *link.bias.shape) for link in found] == [(9, 5, 5), (5, 7, 7), (7, 6, 6)]
+        np.testing.assert_allclose(stages[-2] @ found[-1].weights + found[-1].bias, stages[-1], atol=1e-6)
+        network.gradients[:] = -2 * network.values  # of the last way back
+        for link in links(network):
+            np.testing.assert_allclose(link.gradient, -2 * link.weights, rtol=1e-5)
+        for rows, first in zip(traces(network, np.stack([OBSERVATION, -OBSERVATION])), stages, strict=True):
+            np.testing.assert_allclose(rows[0], first, atol=1e-6)
 
 
 def test_numbers_that_are_none_pass_through() -> None:

@@ -50,7 +50,6 @@ from ai.nn import (
 from ai.nn.layer import MOST_LAYERS
 from ai.training.config import PRESETS, gym_config
 from ai.training.demonstrations import Demonstration
-from ai.training.history import History
 from ai.training.loop import Training
 from ai.training.run import resume, save
 from ai.training.tasks import LanderTask
@@ -102,7 +101,7 @@ def edit(path: Path, **changes):
 
 @pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
 def test_damage_of_any_kind_is_read_or_refused(subject, tmp_path):
-    found = list(damaged(subject, 60, 1, tmp_path))
+    found = list(damaged(subject, 40, 1, tmp_path))
     assert set(found) <= {"read", "refused"}
     assert "refused" in found or not subject.refusals
 
@@ -121,7 +120,7 @@ def test_what_is_no_ordinary_file_of_the_folder_is_named(saved, run, subtests):
         "folder": Path.mkdir,
         "holes": _holes,
     }
-    names = ["config", "online/config", "online/layer-0-bias", "optimizer", "last/config", "training"]
+    names = ["config", "online/layer-0-bias", "optimizer", "last/config"]
     kinds = {"online/layer-0-bias": ".npy", "optimizer": ".npz"}
     for name, (damage, make) in product(names, damages.items()):
         path = run / (name + kinds.get(name, ".json"))
@@ -227,16 +226,14 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
 def test_what_a_run_says_of_itself_is_checked_before_there_is_room_for_it(run, subtests):
     config = json.loads((run / "config.json").read_text())["config"]
     best = json.loads((run / "training.json").read_text())["best"]
-    asked = [{"hidden": [1024] * 400}, {"hidden": [1] * 60_000}, {"hidden": [1024] * 20}, {"env": None},
-             {"env": "x" * 100_000 + ":y"}, {"preset" * 20_000: 1}, {"batch_size": 10**30}]  # fmt: skip
-    counts = [{"features": 1_000_000}, {"features": -1}, {"actions": True}, {"decisions": 0.5}, {"decisions": 10**400},
-              {"gradient_steps": None}]  # fmt: skip
+    asked = [{"hidden": [1024] * 400}, {"hidden": [1] * 60_000}, {"env": None}, {"env": "x" * 100_000 + ":y"},
+             {"preset" * 20_000: 1}]  # fmt: skip
+    counts = [{"features": 1_000_000}, {"actions": True}, {"decisions": 10**400}]
     for name, changes, said in (
         *[("config.json", {"config": config | each}, None) for each in asked],
         *[("config.json", each, r"config\.json") for each in counts],
-        *[("training.json", {"best": best | {"success": each}}, "no finite number") for each in ("x", None, [], True)],
-        *[("training.json", each, r"training\.json")
-          for each in ('{"seed": Infinity}', '{"seed": 1e999}', "[" * 100_000, '{"a":' * 5000)],
+        ("training.json", {"best": best | {"success": None}}, "no finite number"),
+        *[("training.json", each, r"training\.json") for each in ('{"seed": Infinity}', "[" * 100_000)],
     ):  # fmt: skip
         whole = (run / name).read_text()
         (run / name).write_text(changes if isinstance(changes, str) else json.dumps(json.loads(whole) | changes))
@@ -301,22 +298,6 @@ def test_a_network_too_large_to_be_read_is_not_made_either():
         DeepQAgent(config=PRESETS["modern"].changed(hidden=(1024,) * 400))
     with pytest.raises(ValueError, match="values of an example"):
         NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((28, 28, 1), 1 << 12, 1))
-
-
-def test_a_history_is_checked_entry_by_entry(run):
-    history = History()
-    history.write(run)
-    with np.load(run / "history.npz") as arrays:
-        kept = dict(arrays)
-    said = json.loads(str(kept["described"]))
-    for wrong in (
-        {"validations": [{"decisions": 1, "success": "x", "mean_return": 0, "best": True}]},
-        {"alterations": [{"decisions": "1", "name": "x", "before": 0, "after": 0}]},
-        {"stride": 10**400},
-    ):
-        np.savez(run / "history.npz", **kept | {"described": np.array(json.dumps(said | wrong))})
-        with pytest.raises(ModelFormatError, match=r"history\.npz"):
-            History.read(run)
 
 
 # No code from files
@@ -406,11 +387,6 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
                 assert str(place / "d") in stderr
                 assert "left as it is" in stderr or "no readable model" in stderr
                 assert listing(place) == before
-
-
-def test_what_systems_leave_in_a_folder_is_no_obstacle(run):
-    (run / ".DS_Store").write_bytes(b"\0")
-    save(Training(SMALL, validation_episodes=1), run, state=False)
 
 
 def test_the_second_training_of_a_folder_is_refused(tmp_path, capsys):
@@ -505,10 +481,12 @@ def test_a_line_stands_alone_after_one_that_was_cut_short_and_a_state_follows_it
     assert not state_folder(tmp_path / "a").exists()
 
 
-def test_two_writers_of_one_folder_never_mix(tmp_path):
+def test_two_writers_of_one_folder_never_mix_and_what_systems_leave_is_no_obstacle(tmp_path):
     with atomic_folder(tmp_path / "run", KIND) as first, atomic_folder(tmp_path / "run", KIND) as second:
         assert first != second
         write_agent(DeepQAgent(config=SMALL), first)
         write_agent(DeepQAgent(config=SMALL), second)
     assert DeepQAgent.load(tmp_path / "run")
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
+    (tmp_path / "run" / ".DS_Store").write_bytes(b"\0")
+    DeepQAgent(config=SMALL).save(tmp_path / "run")

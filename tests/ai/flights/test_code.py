@@ -91,7 +91,7 @@ def flights(draw):
     return SharedFlight(recording, claim, course, draw(st.sampled_from(["", "helped"])))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(flights())
 def test_a_flight_comes_back_from_its_code_as_it_was(flight):
     assert flight_of(code_of(flight)) == flight
@@ -211,7 +211,7 @@ def test_sticks_move_within_their_ways_and_in_every_step(subtests):
             assert refusal(remade(values, bytes([0, 3, 255]) + moves)) == kind
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(flights(), st.data())
 def test_a_flight_changed_on_purpose_is_a_flight_or_is_refused(flight, data):
     """A byte of its deflated content, of what that unfolds to, or any bytes at all: the checksum is right."""

@@ -23,6 +23,7 @@ def alone(site):
     pad = GROUND.pads[site.pad]
     return placed(
         START,
+        frame_skip=4,
         params=replace(PARAMS, gravity=site.gravity, main_thrust=site.thrust, quadratic_drag=site.air),
         ground=Ground((Pad(0.0, pad.top, pad.width),)),
         limits=replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time),
@@ -33,7 +34,7 @@ def alone(site):
 
 
 def test_each_lander_of_a_batch_flies_as_it_would_alone():
-    env = AnywhereEnv(len(MIXED), 0, frame_skip=1)
+    env = AnywhereEnv(len(MIXED), 0, frame_skip=4)
     env.set_sites(MIXED)
     put(env, START)
     single, together, apart = [alone(site) for site in MIXED], [], []

@@ -29,15 +29,9 @@ def falling(conditions, seconds=0.0, action=0, **more):
 
 
 def test_what_makes_no_sense_is_refused():
-    for name, number in (
-        ("wind", math.nan),
-        ("swing", math.inf),
-        ("gust_period", 0),
-        ("swing_period", -1),
-        ("tank", -1),
-    ):
+    for wrong in ({"wind": math.nan}, {"swing": math.inf}, {"gust_period": 0}, {"swing_period": -1}, {"tank": -1}):
         with pytest.raises(ValueError, match="finite"):
-            Conditions(**{name: number})
+            Conditions(**wrong)
 
 
 def test_a_steady_wind_pushes_as_a_force_does_and_gusts_come_and_go():

@@ -48,20 +48,20 @@ def test_observations_and_rewards_are_about_the_pad_in_question():
     assert paid[0] < paid[1]
 
 
-def test_hills_leave_room_for_every_approach(subtests):
-    for seed in range(30):
-        with subtests.test(seed=seed):
-            ground = hilly(np.random.default_rng(seed))
-            assert ground == hilly(np.random.default_rng(seed)) != hilly(np.random.default_rng(seed + 1))
-            assert sorted((pad.width, pad.factor) for pad in ground.pads) == sorted(PADS)
-            x = np.linspace(-20, 20, 2001)
-            for pad in ground.pads:
-                away = np.abs(x - pad.x)
-                beside = away > pad.width / 2 + 1.0
-                assert (ground.height(x) <= pad.top + np.maximum(clearance(away), 0.0) + 1e-6)[beside].all()
-                assert ground.height(pad.x) == pad.top
-            assert ground.height(x).max() < 6.0
-            assert len(ground.hills) > len(PADS)
+def test_hills_leave_room_for_every_approach():
+    x = np.linspace(-20, 20, 2001)
+    for seed in range(20):
+        ground = hilly(np.random.default_rng(seed))
+        assert ground == hilly(np.random.default_rng(seed)) != hilly(np.random.default_rng(seed + 1)), seed
+        assert sorted((pad.width, pad.factor) for pad in ground.pads) == sorted(PADS), seed
+        for pad in ground.pads:
+            away = np.abs(x - pad.x)
+            beside = away > pad.width / 2 + 1.0
+            free = ground.height(x) <= pad.top + np.maximum(clearance(away), 0.0) + 1e-6
+            assert free[beside].all(), seed
+            assert ground.height(pad.x) == pad.top, seed
+        assert ground.height(x).max() < 6.0, seed
+        assert len(ground.hills) > len(PADS), seed
 
 
 def test_a_knoll_is_flat_under_its_pad_and_a_little_wider_on_both_sides():

@@ -48,6 +48,12 @@ def test_only_what_neither_moves_nor_leans_nor_turns_is_at_rest():
         env = placed((1.0, STAND), limits=limits)
         fly(env, steps=60)
         assert env.outcome[0] == Outcome.FLYING
+    env = placed((0, STAND), (1, STAND))
+    fly(env, steps=LIMITS.rest_steps - 5)
+    assert env.still_steps.all()
+    fly(env, 3, steps=20)
+    assert not env.contacts.any()
+    assert not env.still_steps.any(), "it is counted anew after a hop"
 
 
 def test_each_way_to_crash_is_named_by_the_limit_that_was_broken(subtests):
@@ -72,22 +78,12 @@ def test_each_way_to_crash_is_named_by_the_limit_that_was_broken(subtests):
     assert 1.8 < env.impact[0, 0] < LIMITS.touch_speed
 
 
-def test_rest_is_counted_anew_after_a_hop():
-    env = placed((0, STAND), (1, STAND))
-    fly(env, steps=LIMITS.rest_steps - 5)
-    assert env.still_steps.all()
-    fly(env, 3, steps=20)
-    assert not env.contacts.any()
-    assert not env.still_steps.any()
-
-
 def test_leaving_the_area_and_running_out_of_time():
     env = placed((21.9, 15, 6), (0, 25.9, 0, 6), (0, 15))
     env.steps[2] = round(LIMITS.time / DT) - 1
     result = fly(env)
     assert env.outcome.tolist() == [Outcome.OUT_OF_BOUNDS] * 2 + [Outcome.TIMED_OUT]
-    assert result.terminated.tolist() == [True, True, False]
-    assert result.truncated.tolist() == [False, False, True]
+    assert (result.terminated.tolist(), result.truncated.tolist()) == ([True, True, False], [False, False, True])
 
 
 def test_a_flight_is_the_same_alone_and_in_a_batch():
@@ -180,15 +176,15 @@ def test_the_curriculum_follows_landings():
         Curriculum(((0, "fixed"), (0, "random")))
 
 
-def test_wrong_actions_and_shares_are_refused_and_steps_before_a_reset(subtests):
+def test_wrong_actions_and_shares_are_refused_and_steps_before_a_reset():
     with pytest.raises(RuntimeError, match="reset"):
         LanderEnv(1).step(np.array([0]))
     env = placed((0, 15), (1, 15))
     for actions in [[6, 0], [-1, 0], [0], [0, 0, 0], [[0, 0]], [0.5, 1.0], [np.nan, 0.0], ["a", "b"]]:
-        with subtests.test(actions=actions), pytest.raises(ValueError, match="actions"):
+        with pytest.raises(ValueError, match="actions"):
             env.step(actions)
     for shares in ([1.5, 0.0], [-0.1, 0.0], [0.0, -1.1], [np.nan, 0.0], [0.0]):
-        with subtests.test(shares=shares), pytest.raises(ValueError, match="shares of thrust"):
+        with pytest.raises(ValueError, match="shares of thrust"):
             env.fly(np.zeros(2, int), np.array([shares, shares]))
 
 
@@ -219,22 +215,20 @@ def test_a_flight_begun_at_a_state_flies_from_there_and_leaves_the_others_alone(
     assert np.array_equal(env.observe()[1], alone.observe()[0])
 
 
-def test_a_flight_does_not_begin_at_just_any_state(subtests):
+def test_a_flight_does_not_begin_at_just_any_state():
     env = placed((0, 15))
     before = env.observe()
     for start, how in [
         ((0.0, np.nan, 0, 0, 0, 0), "finite"),
-        ((0.0, 9.0, np.inf, 0, 0, 0), "finite"),
         ((0.0, 9.0, 0, 0, 0), "six"),
         ((22.5, 9.0, 0, 0, 0, 0), "inside"),
         ((0.0, 26.5, 0, 0, 0, 0), "inside"),
         ((0.0, 2.5, 0, 0, 0, 0), "above"),  # in the pad
         ((9.0, 2.1, 0, 0, 0.8, 0), "above"),  # a foot in the plain
     ]:
-        with subtests.test(start=start, how=how):
-            with pytest.raises(ValueError, match=how):
-                env.begin_at(0, np.array(start))
-            assert np.array_equal(env.observe(), before)
+        with pytest.raises(ValueError, match=how):
+            env.begin_at(0, np.array(start))
+        assert np.array_equal(env.observe(), before), start
 
 
 def test_the_lowest_height_clears_the_ground_and_no_more():

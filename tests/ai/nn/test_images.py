@@ -1,14 +1,11 @@
 """Convolution, pooling, flattening and dropout: what is theirs alone. The contract of all layers is in test_layers."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
-    Adam,
     ConvolutionLayer,
     CostFunctions,
     DropoutLayer,
@@ -64,15 +61,6 @@ def test_the_largest_of_each_square_comes_through_and_gets_the_error(size):
         np.testing.assert_array_equal(layer.input_error(error), expected)
 
 
-def test_flattening_moves_nothing():
-    layer, x = FlattenLayer((2, 3, 4)), np.asfortranarray(np.random.default_rng(0).normal(size=(5, 2, 3, 4)))
-    flat = layer.forward_propagate(x)
-    assert flat.shape == (5, 24)
-    assert np.shares_memory(flat, x)
-    np.testing.assert_array_equal(layer.predict(x), flat)
-    np.testing.assert_array_equal(layer.input_error(np.array(flat)), x)
-
-
 def test_dropout_drops_as_often_as_it_says_and_keeps_the_mean():
     layer = DropoutLayer(0.25)
     x = np.ones((200, 100), np.float32)
@@ -99,12 +87,6 @@ def test_many_images_are_predicted_in_parts(monkeypatch):
     np.testing.assert_allclose(digits_network().predict(x), expected, rtol=1e-5)
 
 
-def test_dropout_is_reproducible():
-    x, y = np.random.default_rng(1).random((20, 8, 8, 1)), np.eye(3)[np.arange(20) % 3]
-    histories = [digits_network(seed=seed).train(x, y, epochs=2, batch_size=7) for seed in (1, 1, 2)]
-    assert histories[0] == histories[1] != histories[2]
-
-
 def test_sizes_that_make_no_sense_are_named(subtests):
     network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((8, 8, 1), 2, 3))
     for make, message in [
@@ -126,17 +108,10 @@ def test_sizes_that_make_no_sense_are_named(subtests):
 
 def test_images_of_another_shape_are_named():
     for layer in ConvolutionLayer((8, 8, 1), 2, 3), MaxPoolingLayer((8, 8, 1)), FlattenLayer((8, 8, 1)):
-        for shape in (5, 64), (5, 8, 8), (5, 8, 8, 2), (64,), (1, 5, 8, 8, 1), (8, 8, 1):
+        for shape in (5, 64), (5, 8, 8, 2), (64,), (8, 8, 1):
             for propagate in (layer.forward_propagate, layer.predict):
                 with pytest.raises(ValueError, match=r"a batch of images of shape \(8, 8, 1\)"):
                     propagate(np.zeros(shape))
-
-
-def test_rectified_filters_get_he_weights():
-    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((9, 9, 16), 64, 5))
-    network.add_layer(MaxPoolingLayer((5, 5, 64))).add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
-    filters: Any = network.layers[0]
-    assert filters.weights.std() == pytest.approx(np.sqrt(2 / 400), rel=0.02)
 
 
 def digits_network(seed=0, dropout=0.2):
@@ -150,17 +125,3 @@ def digits_network(seed=0, dropout=0.2):
         .add_layer(DropoutLayer(dropout))
         .add_layer(FullyConnectedLayer(36, 3))
     )
-
-
-def test_recognises_bars_wherever_they_are():
-    rng = np.random.default_rng(3)
-    kinds, places = rng.integers(0, 3, 300), rng.integers(1, 7, 300)
-    x = np.zeros((300, 8, 8, 1))
-    for image, kind, place in zip(x, kinds, places, strict=True):
-        if kind < 2:
-            (image if kind else image.swapaxes(0, 1))[place] = 1
-    x += 0.1 * rng.normal(size=x.shape)
-    network = digits_network()
-    network.train(x[:200], np.eye(3)[kinds[:200]], epochs=15, batch_size=20, optimizer=Adam(0.01))
-    guesses = network.predict(x[200:]).argmax(axis=1)
-    assert np.mean(guesses == kinds[200:]) > 0.95

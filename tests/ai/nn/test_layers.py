@@ -279,18 +279,17 @@ def test_first_weights_are_glorots():
     np.testing.assert_allclose(small, 0.01 * weights, rtol=1e-6)
 
 
-@pytest.mark.parametrize("normalised", [False, True])
-@pytest.mark.parametrize("activation", ["relu", "leaky_relu"])
-def test_rectifiers_get_he_weights(activation, normalised):
-    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(300, 200))
-    if normalised:
-        network.add_layer(LayerNormalisation(200))
-    network.add_layer(ActivationLayer(*ACTIVATION_ROWS[activation]))
-    network.add_layer(FullyConnectedLayer(200, 100)).add_layer(ActivationLayer(*ACTIVATION_ROWS["tanh"]))
-    network.add_layer(ActivationLayer(*ACTIVATION_ROWS["relu"]))
-    dense = [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]
-    assert dense[0].weights.std() == pytest.approx(np.sqrt(2 / 300), rel=0.02)
-    assert np.abs(dense[1].weights).max() <= 1 / np.sqrt(300)
+def test_rectifiers_get_he_weights():
+    for activation, normalised in itertools.product(("relu", "leaky_relu"), (False, True)):
+        network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(300, 200))
+        if normalised:
+            network.add_layer(LayerNormalisation(200))
+        network.add_layer(ActivationLayer(*ACTIVATION_ROWS[activation]))
+        network.add_layer(FullyConnectedLayer(200, 100)).add_layer(ActivationLayer(*ACTIVATION_ROWS["tanh"]))
+        network.add_layer(ActivationLayer(*ACTIVATION_ROWS["relu"]))
+        dense = [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]
+        assert dense[0].weights.std() == pytest.approx(np.sqrt(2 / 300), rel=0.02)
+        assert np.abs(dense[1].weights).max() <= 1 / np.sqrt(300)
 
 
 def test_weights_somebody_looked_at_are_not_drawn_again():

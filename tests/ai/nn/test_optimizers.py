@@ -126,11 +126,3 @@ def test_what_is_not_finite_moves_nothing(name):
     with pytest.raises(DivergenceError, match=r"step was not finite at learning step 1; .*1e\+300"):
         optimizer.step(small, np.full(3, 1e10, np.float32))
     assert (small == 1).all()
-
-
-def test_the_learning_rate_may_change():
-    optimizer, values = SGD(1.0), np.zeros(1)
-    optimizer.step(values, np.ones(1))
-    optimizer.learning_rate = 0.5
-    optimizer.step(values, np.ones(1))
-    assert values[0] == -1.5

@@ -70,7 +70,7 @@ def test_the_template_of_a_pay_is_the_usual_pay():
     env, rng = LanderEnv(64, 3), np.random.default_rng(4)
     env.reset()
     ended = 0
-    for _ in range(150):
+    for _ in range(80):
         before = Situation.of(env)
         result = env.step(rng.choice([0, 3, 3, 4, 5], 64))
         after = Situation.of(env)

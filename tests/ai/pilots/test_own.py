@@ -13,7 +13,6 @@ from ai.lander.environment import LanderEnv
 from ai.pilots import own
 from ai.pilots.own import MeasuredPilot, OwnPilot, pay_by
 from ai.pilots.process import PilotError
-from ai.pilots.shelf import TEMPLATES
 from ai.training.config import Config
 from ai.training.history import Point
 from ai.training.lander_session import LanderSession
@@ -109,8 +108,12 @@ def test_the_last_good_one_flies_on_where_a_new_one_fails(pilot: OwnPilot, broke
     assert pilot.problem == ""
 
 
-def test_the_last_good_one_comes_back_where_the_new_one_fails_later(pilot: OwnPilot):
+def test_the_last_good_one_comes_back_where_the_new_one_fails_later_and_without_one_it_flies_on(pilot: OwnPilot):
     assert flown(pilot) == 1
+    Fake.all[-1].does = "raises"
+    assert flown(pilot) == HELD[0]
+    Fake.all[-1].does = "1"
+    assert flown(pilot) == 1, "it raises now and then, and there is no other"
     save(pilot, "2")
     assert flown(pilot) == 2
     Fake.all[-1].does = "raises"
@@ -119,20 +122,12 @@ def test_the_last_good_one_comes_back_where_the_new_one_fails_later(pilot: OwnPi
     assert running() == ["1"]
 
 
-def test_one_that_raises_now_and_then_flies_on_where_there_is_no_other(pilot: OwnPilot):
-    assert flown(pilot) == 1
-    Fake.all[-1].does = "raises"
-    assert flown(pilot) == HELD[0]
-    Fake.all[-1].does = "4"
-    assert flown(pilot) == 4
-
-
 def test_late_decisions_are_skipped_and_three_in_a_row_end_the_process(pilot: OwnPilot):
     assert flown(pilot) == 1
     fake = Fake.all[-1]
-    for late, _ in ((2, ""), (2, "")):
+    for _ in range(2):
         fake.does = "late"
-        assert flown(pilot, late) == HELD[0]
+        assert flown(pilot, 2) == HELD[0]
         fake.does = "1"
         assert flown(pilot) == 1
     fake.does = "late"
@@ -144,19 +139,13 @@ def test_late_decisions_are_skipped_and_three_in_a_row_end_the_process(pilot: Ow
     assert flown(pilot) == 2
 
 
-def test_one_that_never_begins_is_ended(pilot: OwnPilot):
+def test_one_that_never_begins_or_never_answers_first_is_ended_and_reported(pilot: OwnPilot):
     assert flown(pilot) == 1
     save(pilot, "loading")
     assert flown(pilot, 10) == 1
     assert running() == ["1", "loading"]
     assert flown(pilot, 100) == 1
     assert pilot.problem == "line 2: it was not loaded after 25 seconds"
-    assert pilot.flies_on
-    assert running() == ["1"]
-
-
-def test_one_that_never_answers_first_is_ended_and_reported_at_once(pilot: OwnPilot):
-    assert flown(pilot) == 1
     save(pilot, "late")
     assert flown(pilot, 5) == 1
     assert pilot.problem == "line 2: its first decision took longer than 2 seconds"
@@ -195,21 +184,7 @@ def test_until_the_first_answer_it_coasts(tmp_path: Path, monkeypatch: pytest.Mo
     assert pilot.ready
 
 
-def test_a_real_file_flies_as_it_is_saved(tmp_path: Path):
-    path = tmp_path / "pilot.py"
-    path.write_text((TEMPLATES / "pilot.py").read_text())
-    pilot = OwnPilot(path, patience=60.0)
-    for source, action in (("def act(o): return 4", 4), ("def act(o): return 2", 2)):
-        path.write_text(source)
-        for _ in range(100_000):
-            pilot.look()
-            if (answer := flown(pilot)) == action:
-                break
-        assert answer == action
-    pilot.close()
-
-
-def test_a_real_loop_that_was_saved_in_flight_is_reported_with_its_line_and_the_last_good_one_flies_on(
+def test_a_real_file_flies_as_it_is_saved_and_a_loop_saved_in_flight_is_reported_with_its_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(own, "FIRST", 0.1)
@@ -217,15 +192,17 @@ def test_a_real_loop_that_was_saved_in_flight_is_reported_with_its_line_and_the_
     path.write_text("def act(o): return 4")
     pilot = OwnPilot(path, patience=1.0)
     until = time.monotonic() + 60
-    while flown(pilot) != 4:
-        assert time.monotonic() < until
+    for action in (4, 2):
+        path.write_text(f"def act(o): return {action}")
+        while flown(pilot) != action:
+            assert time.monotonic() < until
     path.write_text("def act(o):\n    while True: pass")
     while not pilot.problem:
         flown(pilot)
         assert time.monotonic() < until
     assert pilot.problem == "line 2: its first decision took longer than 0 seconds: its process was ended"
     assert pilot.flies_on
-    assert flown(pilot) == 4
+    assert flown(pilot) == 2
     pilot.close()
 
 
@@ -276,21 +253,10 @@ def test_landers_are_paid_by_a_file(tmp_path: Path):
         env.step([0, 0, 0])
 
 
-def test_a_run_learns_by_a_file_from_nothing(tmp_path: Path):
-    path = tmp_path / "pay.py"
-    path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
-    turns = LanderSession.live(
-        Config(num_envs=8, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1), 1, pay=path
-    )
-    points = [message for _ in range(400) for message in next(turns) if isinstance(message, Point)]
-    turns.close()
-    assert points[-1].mean_return > 200  # three points for each step in the air
-
-
 def test_a_run_that_goes_on_is_paid_as_before_or_says_that_it_is_not(tmp_path: Path) -> None:
     path, folder = tmp_path / "pay.py", tmp_path / "run"
     path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
-    config = Config(num_envs=64, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1)
+    config = Config(num_envs=32, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1, spawn="near")
 
     def go_on(decisions: int, **options: object) -> tuple[str, float]:
         """What is said at the beginning, and the mean pay of a flight after some decisions."""
@@ -302,9 +268,9 @@ def test_a_run_that_goes_on_is_paid_as_before_or_says_that_it_is_not(tmp_path: P
                 turns.close()
                 return said, points[-1].mean_return
 
-    assert go_on(5_000, pay=path)[1] > 200, "each of some hundred steps pays 3"
-    said, paid = go_on(10_000, resume=folder, pays=(tmp_path / "another.py", path))
+    assert go_on(2_500, pay=path)[1] > 200, "each of some hundred steps pays 3"
+    said, paid = go_on(4_000, resume=folder, pays=(tmp_path / "another.py", path))
     assert (said, paid > 200) == ("", True)
-    said, paid = go_on(20_000, resume=folder)
+    said, paid = go_on(12_000, resume=folder)
     assert "pay.py" in said
     assert paid < 0

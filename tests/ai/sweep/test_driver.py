@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 from ai.sweep.study import Asked, Files, Study, write_files
-from tests.support.studies import TINY, networks_in, run_alone, tiny_plan
+from tests.support.studies import TINY, networks_in, run_alone
 
 pytestmark = [
     pytest.mark.slow,
@@ -151,21 +151,6 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
     assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
 
 
-def test_where_every_trial_fails_the_study_ends_after_a_hundred_and_can_go_on(tmp_path, monkeypatch):
-    from ai.sweep import driver
-
-    study, workers = Study.create(tmp_path / "study", tiny_plan(trials=5000)), 30
-    runner, running = driver.Driver(study, workers, lambda line: None, lambda: None), []
-    monkeypatch.setattr(runner, "_start", lambda job: running.append(job) or runner.jobs.update({len(running): job}))
-    monkeypatch.setattr("ray.wait", lambda jobs, timeout: (jobs, []))
-    monkeypatch.setattr(runner, "_take", lambda number: runner._lose(runner.jobs.pop(number), "no such environment"))
-    runner.run([])
-    assert driver.MOST_LOST <= len(runner.lost) <= driver.MOST_LOST + workers
-    again = Study.load(study.folder)
-    assert sorted(again.under_way) == sorted(runner.lost)
-    assert driver.Driver(again, 1, print, print).search.next() == again.under_way[0]
-
-
 def test_without_an_address_nothing_listens_but_on_this_machine_and_no_token_is_written(tmp_path):
     folder, home = tmp_path / "study", tmp_path / "home"
     home.mkdir(mode=0o500)
@@ -178,18 +163,6 @@ def test_without_an_address_nothing_listens_but_on_this_machine_and_no_token_is_
     assert len(opened) == 2
     assert len(finished(folder)) == 2
     assert not list(home.iterdir())
-
-
-def test_trials_that_fall_behind_are_ended_and_the_others_go_on(tmp_path):
-    folder = tmp_path / "study"
-    options = ["--trials", "8", "--decisions", "1800", "--every", "200", "--workers", "2", "--stop-early"]
-    with sweep(folder, *NEW, *options) as driver:
-        assert "a trial failed" not in ended(driver)
-    study = Study.load(folder)
-    ends = {trial.at if trial.stopped else "end" for trial in study.trials.values()}
-    assert len(study.trials) == 8
-    assert {200, "end"} <= ends <= {200, 600, "end"}, "at powers of three of --every"
-    assert all(study.run_folder(trial, 0) is None for trial in study.trials.values() if trial.stopped)
 
 
 def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_path):
@@ -213,50 +186,6 @@ def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_p
     with sweep(folder, *options) as driver:
         ended(driver)
     assert_as_alone(folder)
-
-
-def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_path):
-    folder = tmp_path / "study"  # its trial must last longer than until its worker is killed
-    Study.create(folder, tiny_plan(trials=1, budget=16_000, every=1000))
-    program = f"""
-from pathlib import Path
-from ai.sweep.cluster import joined
-from ai.sweep.study import Study
-with joined(None, 1):
-    from ai.sweep.driver import Driver
-    driver = Driver(Study.load(Path({str(folder)!r})), 1, print, lambda: None)
-    driver.checkpoint = 0.5
-    driver._report = lambda: print("kept" * any(job.runs for job in driver.jobs.values()), flush=True)
-    driver.run([])
-"""
-    command = [sys.executable, "-c", program]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as driver:
-        assert "kept\n" in iter(driver.stdout.readline, "")
-        (worker,) = training_workers(driver.pid)
-        os.kill(worker, signal.SIGKILL)
-        out = ended(driver)
-    assert "raylet" not in out, "Ray prints it elsewhere than among the results"
-    (trial,) = Study.load(folder).trials.values()
-    assert trial.restarts == 1
-    assert [point.at for point in trial.seeds[0].curve] == list(range(1000, 17_000, 1000))
-
-
-def test_what_is_missing_on_a_node_is_a_failure_and_no_finished_trial(tmp_path):
-    """An environment that only the process that runs the study has."""
-    (tmp_path / "half.py").write_text(
-        "import gymnasium, sys\n"
-        "if not any(name.startswith('ray._private.workers') for name in sys.modules) and 'main.py' in sys.argv[0]:\n"
-        "    gymnasium.register('Half-v0', 'gymnasium.envs.classic_control:CartPoleEnv', max_episode_steps=200)\n"
-    )
-    options = [*NEW, "--env", "half:Half-v0", "--trials", "2", "--decisions", "400", "--workers", "1"]
-    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    with sweep(tmp_path / "study", *options, env=os.environ | {"PYTHONPATH": path}) as driver:
-        out, errors = driver.communicate(timeout=LONG)
-    assert driver.returncode == 1
-    assert "Half" in errors
-    assert "0 of 2 trials are kept" in out
-    assert "--env half:Half-v0" in out
-    assert not finished(tmp_path / "study")
 
 
 def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_change_none(nodes, tmp_path):

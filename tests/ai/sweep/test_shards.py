@@ -19,10 +19,10 @@ AGENT = DeepQAgent.load(MODERN)
 
 
 def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch):
-    whole = evaluate(AGENT, 40, 3, "hard")
-    for size, lengths in ((7, [7] * 5 + [5]), (40, [40])):
+    whole = evaluate(AGENT, 14, 3, "hard")
+    for size, lengths in ((5, [5, 5, 4]), (14, [14])):
         monkeypatch.setattr(module, "SHARD", size)
-        parts = shards(MODERN, 40, 3, "hard")
+        parts = shards(MODERN, 14, 3, "hard")
         assert [len(part.args[1]) for part in parts] == lengths
         cut = Evaluation.of(sum(results(parts)))
         assert (cut.episodes, cut.success, cut.crash) == (whole.episodes, whole.success, whole.crash), size
@@ -46,11 +46,11 @@ def test_sums_of_flights_give_their_means():
 
 
 def test_evaluate_prints_an_interval_around_the_share(capsys):
-    assert main(["evaluate", "--model", str(MODERN), "--episodes", "30", "--json"]) == 0
+    assert main(["evaluate", "--model", str(MODERN), "--episodes", "10", "--json"]) == 0
     values = json.loads(capsys.readouterr().out)
     low, high = values["success_interval"]
     assert low < values["success"] <= high
-    assert main(["evaluate", "--model", str(MODERN), "--episodes", "30"]) == 0
+    assert main(["evaluate", "--model", str(MODERN), "--episodes", "10"]) == 0
     assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
 
 

@@ -73,7 +73,7 @@ def sound(folder, name):
 
 
 @given(st.data())
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_study_bears_any_value_in_any_place(folders, capsys, data):
     folder, name = data.draw(st.sampled_from(folders)), data.draw(st.sampled_from(FILES))
     path = data.draw(st.sampled_from(list(places(sound(folder, name)))))
@@ -83,30 +83,6 @@ def test_study_bears_any_value_in_any_place(folders, capsys, data):
         printed(folder, capsys, *data.draw(st.sampled_from([(), ("--json",)])))
     finally:
         (folder / name).write_text(json.dumps(sound(folder, name)))
-
-
-def test_study_bears_what_has_broken_it(folders, capsys):
-    cases = {
-        "no seeds": (("seeds",), []),
-        "a huge value": (("value",), 1e308),
-        "a huge value of a seed": (("seeds", 0, "value"), -1e308),
-        "a huge return": (("seeds", 0, "curve", 0, "mean_return"), 1e308),
-        "a curve that stands still": (("seeds", 0, "curve"), [{"at": 0, "success": 0.0, "mean_return": 0.0}]),
-    }
-    for folder in folders:
-        for named, (path, new) in cases.items():
-            try:
-                for number in range(9):
-                    name = f"trials/{number:04}/trial.json"
-                    (folder / name).write_text(json.dumps(changed(sound(folder, name), path, new)))
-                    if number in (0, 8):  # in one trial, in all
-                        said = printed(folder, capsys)
-                        assert "nan" not in (folder.parent / "page.html").read_text(), (named, number)
-                        assert len(max(said.splitlines(), key=len)) < 300, (named, number)
-            finally:
-                for number in range(9):
-                    name = f"trials/{number:04}/trial.json"
-                    (folder / name).write_text(json.dumps(sound(folder, name)))
 
 
 def test_settings_that_make_no_sense_are_reported(folders, capsys):

@@ -42,11 +42,6 @@ def test_touchdown_limits_tighten_and_what_is_observed_of_them_does_not():
     assert env.limits.touch_speed == pytest.approx(observed[:, SURROUNDINGS.index("touch speed")])
 
 
-def test_a_network_is_measured_at_every_kind_of_site():
-    score = task_of(SMALL).evaluate(DeepQAgent(AnywhereEnv.num_features, 6, SMALL), 2 * len(SITES), 1)
-    assert score.episodes == 2 * len(SITES)
-
-
 def test_it_is_trained_resumed_and_measured_by_commands(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(AnywhereTask, "test_episodes", len(SITES))
     changes = ["hidden=[8]", "num_envs=8", "batch_size=16", "learning_starts=32", "gradient_steps=1"]

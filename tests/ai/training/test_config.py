@@ -1,20 +1,10 @@
 import json
-from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
-
-
-def test_every_setting_says_to_a_screen_how_to_show_it():
-    for item in fields(Config):
-        described = item.metadata
-        assert described["help"].endswith(".")
-        assert described["group"] in {"learning", "network", "memory", "target", "exploration", "lander", "task"}
-        if item.type in ("int", "float"):
-            assert described["low"] < described["high"]
 
 
 def test_presets_survive_a_file():

@@ -101,49 +101,37 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     assert not insights[0][-1:] or not insights[0][-1].gradients.any()  # still warming up
     assert insights[1][-1].gradients.any()
     write(path, [*landings, replace(landings[0], begins=30)])
-    assert [message.after for message in led.send(("teach", path)) if isinstance(message, SettingChange)] == [
-        1
-    ]  # only the new one
+    again = led.send(("teach", path))
+    assert [each.after for each in again if isinstance(each, SettingChange)] == [1], "only the new one"
     lonely.close()
     led.close()
 
 
-@pytest.mark.parametrize(("content", "words"), [("{", "flights.json"), (None, "no landings")])
-def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from(content, words, tmp_path):
-    path = tmp_path / "flights.json"
-    if content is not None:
-        path.write_text(content)
-    run = LanderSession.live(PRESETS["classic"])
+KNOWN = '"format": "tranquility demonstrations", "version": 1'
+NONSENSE: list[str | bytes] = [
+    "{", "[" * 100_000, b"\xff\xfe", f'{{{KNOWN}, "flights": 3}}', f'{{{KNOWN}, "flights": [3]}}',
+    *(f'{{{KNOWN}, "flights": [{{"seed": 1, "actions": [0], {wrong}}}]}}' for wrong in (
+        '"ground": -1', '"ground": "x"', '"ground": 1.5', '"ground": [1]', '"ground": true', '"spawn": []',
+        '"spawn": {}', '"pad": 1e400', f'"pad": 1{"0" * 30}', f'"begins": 1{"0" * 400}', '"begins": null',
+        '"actions": [true]', '"actions": [Infinity]', '"seed": NaN')),
+]  # fmt: skip
+
+
+def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from_or_it_makes_no_sense(tmp_path):
+    path, run = tmp_path / "flights.json", LanderSession.live(PRESETS["classic"])
     next(run)
-    (refused,) = run.send(("teach", path))
-    assert isinstance(refused, Refused)
-    assert words in refused.problem
+    for content, words in (("", "no landings"), *((content, "flights.json") for content in NONSENSE)):
+        if content:
+            path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        (refused,) = run.send(("teach", path))
+        assert isinstance(refused, Refused), content[:99]
+        assert words in refused.problem
+        assert len(refused.problem) < 400
     assert any(isinstance(message, SwarmState) for message in next(run))
     run.close()
 
 
 KNOWN = '"format": "tranquility demonstrations", "version": 1'
-
-
-@pytest.mark.parametrize(
-    "content",
-    ["[" * 100_000, b"\xff\xfe", f'{{{KNOWN}, "flights": 3}}', f'{{{KNOWN}, "flights": [3]}}',
-     *(f'{{{KNOWN}, "flights": [{{"seed": 1, "actions": [0], {wrong}}}]}}' for wrong in (
-         '"ground": -1', '"ground": "x"', '"ground": 1.5', '"ground": [1]', '"ground": true', '"spawn": []',
-         '"spawn": {}', '"pad": 1e400', f'"pad": 1{"0" * 30}', f'"begins": 1{"0" * 400}', '"begins": null',
-         '"actions": [true]', '"actions": [Infinity]', '"seed": NaN'))],
-)  # fmt: skip
-def test_demonstrations_that_make_no_sense_are_refused_and_the_training_goes_on(content, tmp_path):
-    path = tmp_path / "flights.json"
-    path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    run = LanderSession.live(PRESETS["classic"])
-    next(run)
-    (refused,) = run.send(("teach", path))
-    assert isinstance(refused, Refused)
-    assert "flights.json" in refused.problem
-    assert len(refused.problem) < 400
-    assert any(isinstance(message, SwarmState) for message in next(run))
-    run.close()
 
 
 def test_a_file_of_many_flights_is_read_no_further_than_one_is_written(landings, tmp_path):

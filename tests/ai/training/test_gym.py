@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.normalizer import Normalizer
 from ai.nn import ModelFormatError
 from ai.training.config import gym_config
 from ai.training.gym_task import PATIENCE, GymTask
@@ -22,23 +21,6 @@ class Rocking:
 
     def act(self, observation, held=None):
         return 1 - held
-
-
-def test_a_running_scale_is_the_scale_of_all_it_saw():
-    rng = np.random.default_rng(0)
-    seen = (rng.normal(size=(60, 3)) * [5.0, 0.01, 0.0] + [100.0, -1.0, 3.0]).astype(np.float32)
-    scale = Normalizer(3)
-    for part in (seen[:1], seen[1:20], seen[20:]):
-        scale.update(part)
-    assert scale.mean == pytest.approx(seen.mean(axis=0, dtype=float))
-    scaled = scale(seen)
-    assert scaled.dtype == np.float32
-    assert scaled.mean(axis=0) == pytest.approx(0.0, abs=1e-3)
-    assert scaled.std(axis=0) == pytest.approx([1.0, 1.0, 0.0], abs=1e-3)
-    assert np.abs(scale(seen * 1000)).max() == 10.0
-    copy = Normalizer(3)
-    copy.load(json.loads(json.dumps(scale.to_json())))
-    assert np.array_equal(copy(seen), scaled)
 
 
 def test_without_the_extra_one_line_names_the_command(tmp_path, monkeypatch, capsys):
@@ -161,40 +143,3 @@ class TestOurLanderForOthers:
             assert np.array_equal(first, flight(other, 11)[0])
         assert not np.array_equal(first[:9], flight(env, 12)[0][:9])
         assert info == {"outcome": 3, "is_success": False}
-
-    def test_many_are_made_by_gymnasium_and_each_flies_as_one_alone(self, gymnasium):
-        many, one = gymnasium.make_vec(LANDER, 2, vectorization_mode="sync"), gymnasium.make(LANDER)
-        assert np.array_equal(many.reset(seed=7)[0][1], one.reset(seed=8)[0])
-
-    def test_the_deep_q_agent_takes_it_from_there(self):
-        training = Training(gym_config(LANDER).changed(num_envs=2, learning_starts=8, gradient_steps=1))
-        for _ in range(20):
-            training.advance()
-        assert training.agent.gradient_steps > 0
-
-
-class Calm:
-    """Generator whose every uniform number is the middle of its range: flat ground, no push, no noise of engines."""
-
-    def uniform(self, low=0.0, high=1.0, size=None):
-        return (low + high) / 2 if size is None else np.full(size, (low + high) / 2)
-
-
-def test_lunar_lander_looks_the_same_in_a_mirror():
-    gymnasium = pytest.importorskip("gymnasium")
-    pytest.importorskip("Box2D")
-    mirror = GymTask(gym_config("LunarLander-v3")).symmetry
-    assert mirror is not None
-    assert GymTask(gym_config("CartPole-v1")).symmetry is None, "nothing is claimed of an environment that is not known"
-    here, there = (gymnasium.make("LunarLander-v3").unwrapped for _ in range(2))
-    for env in (here, there):
-        env.reset(seed=0)
-        env._np_random = Calm()
-        env.reset()
-    rng = np.random.default_rng(0)
-    for _ in range(80):
-        action = int(rng.choice(4, p=[0.3, 0.2, 0.3, 0.2]))  # more to the one side than to the other
-        one, other = here.step(action), there.step(int(mirror.actions[action]))
-        assert mirror.mirrored(one[0]) == pytest.approx(other[0], abs=0.01)
-        assert one[1] == pytest.approx(other[1], abs=0.05)
-    assert abs(one[0][4]) > 0.1, "it has turned: the test is not of a lander that falls straight"

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from ai.nn import ModelFormatError
+from ai.training import history as module
 from ai.training.history import (
     CAPACITY,
     COLUMNS,
@@ -39,31 +40,24 @@ def full_history():
     return history
 
 
-def test_columns_are_what_was_appended():
-    history = full_history()
-    assert len(history) == 10
-    assert history["decisions"].tolist() == list(range(10))
-    assert history["crashed"].tolist() == [0.25] * 10
-    assert history.parts.shape == (10, len(PARTS))
-    assert history[PARTS[-1]].tolist() == [len(PARTS) - 1] * 10
-    with pytest.raises(KeyError):
-        history["no such column"]
+@pytest.fixture
+def short(monkeypatch):
+    """Let histories be full after forty points."""
+    monkeypatch.setattr(module, "CAPACITY", 40)
 
 
-def test_points_are_thinned_evenly_and_the_latest_is_always_there(subtests):
-    for count in [1, 2, CAPACITY, CAPACITY + 1, CAPACITY + 2, 5 * CAPACITY + 3, 8 * CAPACITY]:
-        with subtests.test(count=count):
-            history = History()
-            for number in range(count):
-                history.append(point(number))
-            decisions = history["decisions"]
-            assert len(decisions) == len(history) <= CAPACITY
-            assert len(decisions) >= min(count, CAPACITY // 2)
-            assert decisions[0] == 0
-            assert decisions[-1] == count - 1
-            gaps = np.diff(decisions)
-            assert len(np.unique(gaps[:-1])) <= 1
-            assert (gaps > 0).all()
+@pytest.mark.usefixtures("short")
+def test_points_are_thinned_evenly_and_the_latest_is_always_there():
+    for count in (1, 2, 40, 41, 42, 203, 320):
+        history = History()
+        for number in range(count):
+            history.append(point(number))
+        decisions = history["decisions"]
+        assert min(count, 20) <= len(decisions) == len(history) <= 40, count
+        assert (decisions[0], decisions[-1]) == (0, count - 1), count
+        gaps = np.diff(decisions)
+        assert (gaps > 0).all(), count
+        assert len(np.unique(gaps[:-1])) <= 1, count
 
 
 def test_checkpoints_are_thinned_and_the_first_and_last_are_kept():
@@ -96,23 +90,25 @@ def same(one, other):
         assert second.values.dtype == np.float32
 
 
-def test_what_is_written_is_read_and_goes_on_alike(tmp_path, subtests):
-    for extra in (0, CAPACITY + 5, 3 * CAPACITY):
-        with subtests.test(extra=extra):
-            history = full_history()
-            for number in range(10, extra):
-                history.append(point(number))
-            history.write(tmp_path)
-            again = History.read(tmp_path)
-            same(history, again)
-            for number in range(extra, extra + CAPACITY):
-                history.append(point(number))
-                again.append(point(number))
-            same(history, again)
+@pytest.mark.usefixtures("short")
+def test_what_is_written_is_read_and_goes_on_alike(tmp_path):
+    for extra in (0, 45, 120):
+        history = full_history()
+        for number in range(10, extra):
+            history.append(point(number))
+        history.write(tmp_path)
+        again = History.read(tmp_path)
+        same(history, again)
+        for number in range(extra, extra + 40):
+            history.append(point(number))
+            again.append(point(number))
+        same(history, again)
 
 
-def test_it_can_be_sent_to_another_process_and_copied():
+def test_it_has_what_was_appended_and_can_be_sent_to_another_process_and_copied():
     history = full_history()
+    assert history["crashed"].tolist() == [0.25] * 10
+    assert history[PARTS[-1]].tolist() == [len(PARTS) - 1] * 10
     same(history, pickle.loads(pickle.dumps(history)))
     twin = history.copy()
     history.append(point(99))

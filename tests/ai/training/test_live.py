@@ -1,18 +1,17 @@
 import pickle
 from dataclasses import fields, replace
-from itertools import pairwise
+from itertools import chain, islice, pairwise
 
 import numpy as np
 import pytest
 
-from ai.agent.schedule import exploration_of_each
 from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping
 from ai.training.config import Config, gym_config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
-from ai.training.lander_session import CAREFUL, LanderSession
+from ai.training.lander_session import LanderSession
 from ai.training.loop import Training
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from ai.training.run import resume
@@ -51,18 +50,14 @@ def of(kind, messages):
     return [message for message in messages if isinstance(message, kind)]
 
 
-@pytest.mark.parametrize(
-    "changes", [{}, {"num_envs": 1, "success_pass": True, "fly_target": False, "spawn": "curriculum"}]
-)
-def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
+def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
     all_the_time(monkeypatch)
-    config = TINY.changed(**changes)
-    run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
+    run, headless = begin(TINY, 3, keep=tmp_path / "keep"), Training(TINY, 3)
     messages = messages_in(run, 1)
     scores = []
-    for _ in range(90):
+    for _ in range(50):
         messages += next(run)
         score = headless.advance().evaluation
         scores += [score] if score else []
@@ -72,22 +67,11 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
     assert headless.agent.gradient_steps > 0
     for network in ("online", "target"):
         assert np.array_equal(getattr(saved.agent, network).values, getattr(headless.agent, network).values)
-    assert saved.best == headless.best
-    if headless.best is not None:
-        assert np.array_equal(saved.best_agent().network.values, headless.best_agent().network.values)
+    assert saved.best == headless.best is not None
+    assert np.array_equal(saved.best_agent().network.values, headless.best_agent().network.values)
     tried = of(Validation, [*messages, *answer])
     assert [(each.success, each.mean_return) for each in tried] == [(each.success, each.mean_return) for each in scores]
-    assert [each.decisions for each in tried] == [640 * (each + 1) for each in range(len(scores))]
-    assert len(tried) == (4 if config.num_envs == 32 else 0)
-
-
-def test_the_first_turn_says_how_it_begins(begin):
-    first = next(begin(TINY, 7))
-    assert of(RunStarted, first) == [RunStarted(TINY, 7, 0)]
-    (checkpoint,) = of(Checkpoint, first)
-    assert (checkpoint.decisions, checkpoint.seconds) == (0, 0.0)
-    assert np.array_equal(checkpoint.values, Training(TINY, 7).agent.network.values)
-    assert len(of(SwarmState, first)) == len(of(NetworkState, first)) == 1
+    assert [each.decisions for each in tried] == [640, 1280]
 
 
 def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_process(begin):
@@ -116,25 +100,21 @@ def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_
     assert last.crashed == pytest.approx((ended == Outcome.CRASHED).mean(), abs=0.05)
 
 
-def test_the_careful_lander_acts_at_random_the_least():
-    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3, TINY.num_envs)
-    assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
-
-
 def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
-    run = begin(TINY.changed(normalise_inputs=True))
-    checkpoints = of(Checkpoint, messages_in(run, 200))
-    assert [each.decisions for each in checkpoints] == [0, 2528, 5056]
-    other = begin(TINY.changed(normalise_inputs=True))
-    again = of(Checkpoint, messages_in(other, 90))
-    assert np.array_equal(checkpoints[1].values, again[1].values)
-    training = Training(TINY.changed(normalise_inputs=True), 0, evaluate_every=0)
+    config = TINY.changed(normalise_inputs=True)
+    run = begin(config)
+    begins = next(run)
+    assert of(RunStarted, begins) == [RunStarted(config, 0, 0)]
+    assert len(of(SwarmState, begins)) == len(of(NetworkState, begins)) == 1
+    first, second = of(Checkpoint, [*begins, *messages_in(run, 89)])
+    assert (first.decisions, first.seconds, second.decisions) == (0, 0.0, 2528)
+    training = Training(config, 0, evaluate_every=0)
     while training.agent.decisions < 2528:
         training.advance()
-    agent = checkpoints[1].agent(training.config)
+    agent = second.agent(training.config)
     assert np.array_equal(agent.q_values(training.observation), training.agent.q_values(training.observation))
     with pytest.raises(ValueError, match="parameters"):
-        checkpoints[1].agent(TINY.changed(hidden=(9,)))
+        second.agent(TINY.changed(hidden=(9,)))
 
 
 REFUSED = [
@@ -159,10 +139,6 @@ def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin):
     assert np.array_equal(actual.position, expected.position)
 
 
-def live_knobs():
-    return [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "reward_weights"]
-
-
 ELSEWHERE = {
     "batch_size": 64, "gradient_steps": 3, "mirror": False, "double": False, "fly_target": False,
     "target_judges": False, "target_update_interval": 7,
@@ -171,32 +147,41 @@ ELSEWHERE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", live_knobs())
-def test_every_live_knob_makes_a_difference(begin, name):
+def trained(begin, config, name, value):
+    """A run whose knob is turned to a value after some decisions, or None as it was."""
+    run = begin(config)
+    messages_in(run, 5)
+    training = run.gi_frame.f_locals["session"].training
+    if name.startswith("success"):  # there are no landings yet to learn from: give it some
+        cells = training.agent.replay.transitions
+        picked = [part[:64].copy() for part in cells]
+        picked[0] = np.random.default_rng(0).normal(size=picked[0].shape).astype(np.float32)
+        training.agent.successes.add(type(cells)(*picked))
+    messages_in(run, 5)
+    if value is not None:
+        assert isinstance(run.send(("change", name, value))[0], SettingChange)
+        assert getattr(training.agent.config, name) == value
+    messages_in(run, 20)
+    return training
+
+
+def test_every_live_knob_makes_a_difference(begin, subtests):
+    live = [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "reward_weights"]
+    assert len(live) > 20
     # What a knob needs for its effect to show within a few flights.
-    config = TINY.changed(success_pass=name == "success_batch_size", n_step=3, gradient_clip=0.5)
-    config = config.changed(
-        epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, schedule_decisions=1000, reward_scale=1.0
-    )
-    config = config.changed(epsilon_decisions=0 if name == "epsilon_decay" else 2000)
-    value = ELSEWHERE.get(name, getattr(config, name) * 0.8)
-    run, quiet = begin(config), begin(config)
-    if name.startswith("success"):
-        messages_in(run, 5), messages_in(quiet, 5)
-        for each in (run, quiet):  # there are no landings yet to learn from: give it some
-            training = each.gi_frame.f_locals["session"].training
-            rng = np.random.default_rng(0)
-            cells = training.agent.replay.transitions
-            picked = [part[:64].copy() for part in cells]
-            picked[0] = rng.normal(size=picked[0].shape).astype(np.float32)
-            training.agent.successes.add(type(cells)(*picked))
-    messages_in(run, 10), messages_in(quiet, 10)
-    assert isinstance(run.send(("change", name, value))[0], SettingChange)
-    messages_in(run, 25), messages_in(quiet, 25)
-    ours, theirs = (each.gi_frame.f_locals["session"].training for each in (run, quiet))
-    assert getattr(ours.agent.config, name) == value
-    same = np.array_equal(ours.observation, theirs.observation)
-    assert not (same and np.array_equal(ours.agent.network.values, theirs.agent.network.values))
+    usual = TINY.changed(
+        n_step=3, gradient_clip=0.5, epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, schedule_decisions=1000,
+        reward_scale=1.0, epsilon_decisions=2000,
+    )  # fmt: skip
+    needs = {"success_batch_size": {"success_pass": True}, "epsilon_decay": {"epsilon_decisions": 0}}
+    quiet = trained(begin, usual, "", None)
+    for name in live:
+        with subtests.test(name):
+            config = usual.changed(**needs.get(name, {}))
+            beside = quiet if name not in needs else trained(begin, config, name, None)
+            turned = trained(begin, config, name, ELSEWHERE.get(name, getattr(config, name) * 0.8))
+            same = np.array_equal(turned.observation, beside.observation)
+            assert not (same and np.array_equal(turned.agent.network.values, beside.agent.network.values))
 
 
 def test_turned_weights_pay_in_the_run_that_goes_on(begin):
@@ -258,25 +243,20 @@ def test_a_full_disk_is_reported_once_and_training_goes_on(begin, tmp_path, monk
     monkeypatch.setattr(History, "write", full)
     assert of(Saved, run.send(("save", tmp_path / "run"))) == [Saved(tmp_path / "run", "No space left on device")]
     assert resume(Training, tmp_path / "run").agent.decisions == 9 * 32  # what was there before is whole
-    messages = messages_in(run, 100)
+    messages = messages_in(run, 20)
     assert of(Saved, messages) == [Saved(tmp_path / "keep", "No space left on device")]
-    assert len(of(SwarmState, messages)) == 100
+    assert len(of(SwarmState, messages)) == 20
     monkeypatch.undo()
     run.close()
-    assert resume(Training, tmp_path / "keep").agent.decisions == 109 * 32
-
-
-def until_it_fails(run, messages):
-    for _ in range(200):
-        messages += next(run)
+    assert resume(Training, tmp_path / "keep").agent.decisions == 29 * 32
 
 
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
-    messages = messages_in(run, 120)
+    messages = messages_in(run, 90)
     run.gi_frame.f_locals["session"].training.agent.replay.transitions.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
-        until_it_fails(run, messages)
+        messages.extend(chain.from_iterable(islice(run, 200)))
     good = of(Checkpoint, messages)[-1]
     assert good.decisions > 0
     kept = resume(Training, tmp_path / "keep")
@@ -296,7 +276,7 @@ def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     (saved,) = of(Saved, run.send(("save", tmp_path / "keep")))
     assert "finite" in saved.problem
     with pytest.raises(FloatingPointError, match="not finite after learning step"):
-        until_it_fails(run, messages)
+        messages.extend(chain.from_iterable(islice(run, 200)))
     assert all(np.isfinite(each.values).all() for each in of(Checkpoint, messages))
     assert np.isfinite(resume(Training, tmp_path / "keep").agent.network.values).all()
 
@@ -319,14 +299,16 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
     monkeypatch.setattr(LanderTask, "evaluate_every", 1600)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
     straight, run = begin(seed=3), begin(seed=3)
-    whole, pieces = messages_in(straight, 260), messages_in(run, 103)  # in the midst of validation flights
-    for turns in (1, 80, 76):
+    whole, pieces = messages_in(straight, 160), messages_in(run, 103)  # in the midst of validation flights
+    for turns in (1, 30, 26):
         pieces += run.send(("save", tmp_path / "run"))  # which flies what is left of them
         run = begin(resume=tmp_path / "run")
         assert of(RunStarted, next(run))[0].lost == ""
         pieces += messages_in(run, turns)
     assert by_kind(pieces) == by_kind(whole)
-    assert len(of(Validation, whole)) == 4
+    checkpoints = [[each.decisions for each in of(Checkpoint, messages)] for messages in (pieces, whole)]
+    assert checkpoints[0] == checkpoints[1]
+    assert len(of(Validation, whole)) == 2
     for each, folder in ((straight, "straight"), (run, "pieces")):
         each.send(("save", tmp_path / folder))
     alike = [resume(Training, tmp_path / folder) for folder in ("straight", "pieces")]
@@ -337,7 +319,7 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
 
 def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     run = begin()
-    before = of(Point, messages_in(run, 250))
+    before = of(Point, messages_in(run, 150))
     assert np.isnan(before[0].mean_return), "no flight had ended"
     assert np.isnan(before[0].loss)
     assert before[-1].mean_return < -50
@@ -352,40 +334,36 @@ def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
 
 
 def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
-    run = begin(clock=(clock := Clock()))
-    messages, history = messages_in(run, 30), History()
+    run, history = begin(clock=(clock := Clock())), History()
+    messages_in(run, 30)
 
-    def turn(name, value):
+    def turn(name, value, seconds=0.0, turns=0):
         for message in run.send(("change", name, value)):
             history.append(message)
+        clock.now += seconds
+        messages_in(run, turns)
+
+    def marks():
+        return [(each.name, each.before, each.after) for each in history.setting_changes]
 
     for value in (0.97, 0.96, 0.95, 0.9):  # a drag, with a decision at each step
-        turn("discount", value)
-        clock.now += 0.3
-        messages += messages_in(run, 1)
-    (mark,) = history.setting_changes
-    assert (mark.before, mark.after, mark.decisions) == (TINY.discount, 0.9, 32 * 32)
-    turn("learning_rate", 0.1)
-    clock.now += 5.0
-    messages_in(run, 1)
-    turn("discount", 0.85)
-    assert [(each.name, each.before, each.after) for each in history.setting_changes] == [
-        ("discount", TINY.discount, 0.9),
-        ("learning_rate", TINY.learning_rate, 0.1),
-        ("discount", 0.9, 0.85),
-    ]
-    clock.now += 5.0
+        turn("discount", value, 0.3, 1)
+    dragged, rate = ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1)
+    assert marks() == [dragged]
+    assert history.setting_changes[0].decisions == 32 * 32
+    turn("learning_rate", 0.1, 5.0, 1)
+    turn("discount", 0.85, 5.0)
+    assert marks() == [dragged, rate, ("discount", 0.9, 0.85)]
     turn("discount", 0.8)  # it rests: nothing was learnt with the value before
     turn("discount", 0.9)  # and back to where it was
-    assert [each.name for each in history.setting_changes] == ["discount", "learning_rate"]
+    assert marks() == [dragged, rate]
     turn("discount", 0.82)
-    assert [each.after for each in history.setting_changes] == [0.9, 0.1, 0.82], "the mark of before stays"
-    turn("discount", 0.9)
-    turn("discount", 0.9)
-    turn("discount", 0.9)  # nothing is turned
-    kept = run.gi_frame.f_locals["session"].history
-    assert kept.setting_changes == history.setting_changes
-    assert run.gi_frame.f_locals["session"].training.config.discount == 0.9
+    assert marks() == [dragged, rate, ("discount", 0.9, 0.82)], "the mark of before stays"
+    for _ in range(3):
+        turn("discount", 0.9)
+    session = run.gi_frame.f_locals["session"]
+    assert session.history.setting_changes == history.setting_changes
+    assert session.training.config.discount == 0.9
 
 
 class Clock:

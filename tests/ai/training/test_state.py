@@ -29,7 +29,7 @@ RUNS = {
 }
 if find_spec("gymnasium"):
     RUNS["gymnasium"] = gym_config("CartPole-v1").changed(learning_starts=64, num_envs=3, hidden=(8,))
-TURNS = 110
+TURNS = 70
 
 
 def begun(config):
@@ -75,18 +75,16 @@ def test_stopped_and_gone_on_with_at_any_point_it_is_the_straight_run(tmp_path, 
     for name, config in RUNS.items():
         with subtests.test(name):
             straight, pieces, at = on(begun(config), TURNS), begun(config), 0
-            for stop in (1, 2, 13, 40, 41, 77, 100, 109, TURNS, TURNS):
+            for stop in (1, 13, 40, 41, TURNS, TURNS):
                 pieces, at = gone_on(on(pieces, stop - at), tmp_path / name), stop
                 assert pieces.lost == ""
             assert straight.agent.gradient_steps > 0
             assert differing(straight, pieces) == []
-            for each in (straight, pieces):  # and so they go on
-                each.evaluate()
-                on(each, 5)
-            assert differing(straight, pieces) == []
+            assert differing(on(straight, 3), on(pieces, 3)) == [], "and so they go on"
 
 
-def test_the_measurement_at_an_end_changes_nothing_of_a_run_that_goes_on(tmp_path):
+def test_the_measurement_at_an_end_changes_nothing_of_a_run_that_goes_on(tmp_path, monkeypatch):
+    monkeypatch.setattr(LanderTask, "test_episodes", 4)
     straight, stopped = on(begun(SMALL), 60), on(begun(SMALL), 30)
     save(stopped, tmp_path / "run", final=True)
     assert stopped.best is not None
@@ -162,7 +160,7 @@ def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
     rng, refused = np.random.default_rng(0), list[str]()
     for path in files(tmp_path / "run").values():
         whole = path.read_bytes()
-        for number in range(12):
+        for number in range(6):
             damaged = bytearray(whole)
             if number % 2:
                 del damaged[int(rng.integers(len(whole))) :]
@@ -179,7 +177,7 @@ def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
             with pytest.raises(ModelFormatError, match=path.name.split(".")[0]):
                 resume(Training, tmp_path / "run")
         path.write_bytes(whole)
-    assert len(refused) > 30
+    assert len(refused) > 15
     assert [problem for problem in refused if "without this folder" not in problem] == []
     remove_state(tmp_path / "run")
     assert "empty memory" in resume(Training, tmp_path / "run").lost
@@ -236,19 +234,14 @@ def test_a_process_that_is_killed_between_two_files_leaves_a_run_of_one_moment(t
     keeper.end()
 
 
-def test_a_state_of_other_networks_is_that_of_another_run(tmp_path):
-    save(on(begun(SMALL), 20), tmp_path / "run")
-    other = on(Training(SMALL, 6, evaluate_every=0), 20)
+def test_a_state_of_other_networks_is_another_runs_and_a_run_that_has_diverged_leaves_none(tmp_path):
+    training, other = on(begun(SMALL), 20), on(Training(SMALL, 6, evaluate_every=0), 20)
+    save(training, tmp_path / "run")
     save(other, tmp_path / "other")
     move_state(tmp_path / "other", tmp_path / "run")
     assert "empty memory" in resume(Training, tmp_path / "run").lost
-
-
-def test_a_run_that_has_ended_for_good_leaves_no_state(tmp_path):
-    training = on(begun(SMALL), 20)
     save(training, tmp_path / "run")
     assert state_folder(tmp_path / "run").exists()
-    training.evaluate()
-    training.restore_best()  # it has diverged
+    training.restore_best()
     save(training, tmp_path / "run")
     assert not state_folder(tmp_path / "run").exists()

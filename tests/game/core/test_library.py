@@ -2,14 +2,12 @@ import errno
 import json
 import os
 import shutil
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ai.agent.agent import DeepQAgent
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import resume, save
@@ -73,12 +71,6 @@ def test_a_player_without_a_folder_has_no_runs(library: Library):
     assert library.problem == ""
     assert library.rescued() is None
     assert library.undo_delete() is None
-
-
-def test_the_latest_comes_first(library: Library):
-    for age, name in enumerate(("new", "older", "oldest")):
-        os.utime(add(library, name) / "training.json", (2e9 - age, 2e9 - age))
-    assert [run.name for run in library.runs()] == ["new", "older", "oldest"]
 
 
 def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: Library, tmp_path: Path):
@@ -172,19 +164,6 @@ def test_what_is_no_plain_network_is_not_copied(
         library.import_folder(strange)
     assert library.runs() == []
     assert not library.folder.exists() or not [*library.folder.iterdir()]
-
-
-def test_what_was_just_thrown_away_is_what_comes_back_although_the_clock_was_set_back(
-    library: Library, monkeypatch: pytest.MonkeyPatch
-):
-    clock = iter(range(2 * 10**18, 0, -(10**16)))
-    monkeypatch.setattr(time, "time_ns", lambda: next(clock))
-    for number in range(12):
-        add(library, f"run {number}")
-        library.delete(f"run {number}")
-        assert library.last_deleted == f"run {number}"
-    assert library.undo_delete()
-    assert names(library) == ["run 11"]
 
 
 def test_what_is_no_run_is_not_listed(library: Library):
@@ -322,13 +301,6 @@ def test_a_disk_that_takes_nothing_is_said(library: Library, monkeypatch: pytest
     assert names(library) == ["run"]
 
 
-def test_a_library_that_is_a_file_is_said(tmp_path: Path):
-    (tmp_path / "models").write_text("")
-    library = Library(tmp_path)
-    assert library.runs() == []
-    assert str(tmp_path) in library.problem
-
-
 def test_an_import_copies_a_run_under_a_free_name(library: Library, trained: Path, tmp_path: Path):
     for name in ("run", "run 2"):
         assert library.import_folder(trained).name == name
@@ -360,16 +332,6 @@ def test_what_had_no_name_when_the_game_died_can_be_kept(library: Library, train
     assert library.keep_rescued(rescued.name).resumable
     assert library.rescued() is None
     assert names(library) == sorted([rescued.name, "taken"])
-
-
-def test_what_had_no_name_can_be_let_go_and_brought_back(library: Library):
-    add(library, ".training", seed=9)
-    library.discard_rescued()
-    library.discard_rescued()
-    assert library.rescued() is None
-    restored = library.undo_delete()
-    assert restored is not None
-    assert read_run(restored).seed == 9
 
 
 def test_two_games_at_once_keep_their_runs_apart(library: Library):
@@ -407,11 +369,3 @@ def test_what_a_save_never_finished_is_cleared_away_in_time(library: Library):
     assert library.runs() == []
     assert not old.exists()
     assert fresh.exists()
-
-
-def test_a_shipped_network_reads_as_a_run_that_cannot_go_on(tmp_path: Path):
-    agent = DeepQAgent(config=SMALL)
-    agent.save(tmp_path / "shipped")
-    (tmp_path / "shipped" / "training.json").write_text(json.dumps(DESCRIBED))
-    run = read_run(tmp_path / "shipped")
-    assert (run.name, run.problem, run.resumable) == ("shipped", "", False)

@@ -308,24 +308,6 @@ def test_one_that_will_not_stop_is_ended(start, tmp_path, monkeypatch):
     polled(stubborn, lambda _: stubborn.gone)
 
 
-def test_closing_is_for_certain_and_may_be_done_at_any_time(start):
-    at_once = start(chores.counting)
-    at_once.close()
-    hung = start(chores.hanging)
-    polled(hung, ticks)
-    hung.close(0.05)
-    ended = start(chores.counting, 2)
-    over(ended)
-    for each in (at_once, hung, ended):
-        each.close()
-        each.send("nobody listens")
-        each.pause()
-        assert each.state is WorkerState.ENDED
-        assert each.poll() is not None
-        assert each.gone
-    assert multiprocessing.active_children() == []
-
-
 def test_a_worker_that_is_forgotten_ends():
     forgotten = Worker(chores.counting)
     polled(forgotten, ticks)
@@ -389,6 +371,24 @@ def test_the_process_has_one_core_and_no_pygame(start):
     looking = start(chores.looking_around)
     (message,) = over(looking)
     assert message == {"modules": {"numpy"}, "threads": "1", "interrupted": True}
+
+
+def test_closing_is_for_certain_and_may_be_done_at_any_time(start):
+    at_once = start(chores.counting)
+    at_once.close()
+    hung = start(chores.hanging)
+    polled(hung, ticks)
+    hung.close(0.05)
+    ended = start(chores.counting, 2)
+    over(ended)
+    for each in (at_once, hung, ended):
+        each.close()
+        each.send("nobody listens")
+        each.pause()
+        assert each.state is WorkerState.ENDED
+        assert each.poll() is not None
+        assert each.gone
+    assert multiprocessing.active_children() == []
 
 
 def test_the_program_can_be_imported_by_its_workers():

@@ -23,7 +23,7 @@ from game.scenes.train.digits import DigitTrainingScene
 from game.training.digit_models import DigitModels
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
-from game.training.run_settings import RunSettings, knob_descriptions
+from game.training.run_settings import knob_descriptions
 from game.ui.charts import Scrubber
 from tests.support import inline_worker
 from tests.support.driver import Driver
@@ -62,36 +62,30 @@ def test_every_setting_has_a_knob_and_a_word():
                 assert network.predict(DigitClassifier(network).shaped(np.zeros((1, 28, 28)))).shape == (1, 10)
 
 
-def test_presets_are_named_and_no_sabotage_is_offered():
-    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, DIGITS)
-    assert run_settings.named == ("classic", "")
-    assert DIGITS.said(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5)))[0] == "Modern"
-
-
 # A run
 
 
-def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
-    scene = beside.top
-    beside.key(pygame.K_RETURN)
-    beside.wait(lambda: scene.run.confusion and len(scene.run.history))
+def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
+    scene = train.top
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.run.confusion and len(scene.run.history))
     assert scene.run.config == SMALL
     assert scene.run.confusion.table.sum() == 2_000
     assert scene.matrix.confusion is scene.run.confusion
-    beside.key(pygame.K_RETURN)
-    beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
-    beside.frames(5)
-    beside.click(beside.widget(texts.DIGIT_RUN_STOP).box.center)
-    beside.wait(lambda: not scene.run.alive)
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.run.state is WorkerState.PAUSED)
+    train.frames(5)
+    train.click(train.widget(texts.DIGIT_RUN_STOP).box.center)
+    train.wait(lambda: not scene.run.alive)
     assert scene.run.state is WorkerState.ENDED
     assert not scene.run.problem
     assert 0 < scene.run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    beside.wait(lambda: texts.TRAIN_GO_ON in [each.label for each in scene.form.widgets])
+    train.wait(lambda: texts.TRAIN_GO_ON in [each.label for each in scene.form.widgets])
     stood = scene.run.history["step"][-1]
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
-    beside.click(beside.widget(texts.TRAIN_GO_ON).box.center)
-    beside.wait(lambda: len(scene.run.history) and scene.run.history["step"][-1] > stood)
+    train.click(train.widget(texts.TRAIN_GO_ON).box.center)
+    train.wait(lambda: len(scene.run.history) and scene.run.history["step"][-1] > stood)
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
     assert len(scene.run.earlier) == 1
     scene.run.close()
@@ -166,15 +160,6 @@ def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_pa
     assert not half.exists()
 
 
-def test_two_games_teach_two_runs(tmp_path: Path):
-    one, other = DigitModels(tmp_path), DigitModels(tmp_path)
-    one.hold()
-    other.hold()
-    assert one.unsaved != other.unsaved
-    one.release()
-    other.release()
-
-
 def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driver, tmp_path: Path):
     digit_run, runs = beside.top.run, tmp_path / "user" / "digits" / "runs"
     beside.key(pygame.K_RETURN)
@@ -187,16 +172,6 @@ def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driv
     beside.wait(lambda: len(digit_run.history))
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
     assert digit_run.seed == 4
-
-
-@pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])
-def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
-    (tmp_path / "taken").mkdir()
-    digit_run = TrainingRun(DIGITS, DigitModels(tmp_path))
-    digit_run.collection.unsaved.mkdir()
-    with pytest.raises(LibraryError):
-        digit_run.save(name)
-    assert digit_run.collection.unsaved.exists()
 
 
 # The matrix

@@ -93,13 +93,6 @@ def test_every_sign_is_drawn_and_looks_like_no_other():
         assert len(pictures) == len(signs.SIGNS[family])
 
 
-def test_signs_stand_in_sentences():
-    sign = signs.sign("playstation", pygame.CONTROLLER_BUTTON_A)
-    parts = [typeface.reach(part, 15.0, "regular") for part in ("Press ", sign, " to fly")]
-    assert typeface.reach(f"Press {sign} to fly", 15.0, "regular") == pytest.approx(sum(parts), abs=1)
-    assert sign.isprintable() is False  # nobody can type it
-
-
 def test_every_mission_has_an_icon_of_its_own():
     names = [FIRST.name, *MISSIONS, "daily"]
     pictures = set()

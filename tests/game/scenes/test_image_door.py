@@ -11,7 +11,7 @@ from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.digits import DigitTrainingScene
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
-from tests.support.small import DIGITS
+from tests.support.small import DIGITS, learn, pause
 
 
 @pytest.fixture
@@ -19,15 +19,8 @@ def small_run() -> tuple[type[DigitTrainingScene], object]:
     return DigitTrainingScene, DIGITS
 
 
-def start(driver: Driver) -> None:
-    """Start a run, and wait until it has learnt for a moment."""
-    driver.form.focus(driver.top.start_button)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.run.history))
-
-
 def open_lesson(driver: Driver) -> None:
-    start(driver)
+    learn(driver, 1)
     driver.form.focus(driver.widget(texts.LESSON_WHY))
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: isinstance(driver.top, LessonScene))
@@ -49,9 +42,8 @@ def test_a_word_opens_the_lesson_of_the_first_image_and_the_run_goes_on_afterwar
 
 
 def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followed_by_the_first(train: Driver) -> None:
-    start(train)
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
+    learn(train, 1)
+    pause(train)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     train.frames(3)

@@ -9,20 +9,12 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
-from tests.support.small import LANDERS
-
-
-def toggle(driver: Driver) -> None:
-    """Start, pause or resume."""
-    driver.form.focus(driver.top.start_button)
-    driver.key(pygame.K_RETURN)
+from tests.support.small import LANDERS, learn, pause, toggle
 
 
 def start(driver: Driver) -> None:
-    toggle(driver)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
-    toggle(driver)
-    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
+    learn(driver)
+    pause(driver)
     driver.frames(30)
 
 
@@ -59,7 +51,7 @@ def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
     train.wait(lambda: scene.run.swarm_state.decisions > stood)
 
 
-def test_a_click_chooses_a_lander_and_another_opens_its_lesson(train: Driver) -> None:
+def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_alone(train: Driver) -> None:
     start(train)
     scene = train.top
     place = place_of(train, 2)
@@ -69,11 +61,8 @@ def test_a_click_chooses_a_lander_and_another_opens_its_lesson(train: Driver) ->
     train.click(place)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 2
-
-
-def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
-    start(train)
-    scene = train.top
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
     place = place_of(train, 3)
     pointer = next(each for each in scene.form.widgets if isinstance(each, VirtualPointer) and each.box.top < 200)
     scene.form.focus(pointer)
@@ -90,7 +79,7 @@ def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
 def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train: Driver) -> None:
     toggle(train)
     scene = train.top
-    train.wait(lambda: len(scene.run.history.checkpoints) >= 3)
+    train.wait(lambda: len(scene.run.history.checkpoints) >= 2)
     toggle(train)
     train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     train.frames(30)

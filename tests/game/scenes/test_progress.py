@@ -98,14 +98,6 @@ def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
     }
 
 
-def test_nothing_flown_is_nothing_lost(context: Context):
-    progress = Progress(context.user_dir, context.settings)
-    assert (progress.figures.flights, progress.restorable) == (0, False)
-    progress.reset()
-    progress.restore()
-    assert files(context) == {}
-
-
 def test_a_disk_that_refuses_keeps_everything_where_it_is(context: Context, monkeypatch: pytest.MonkeyPatch):
     context.settings.learnt = {"neuron": 3}
     fly(context)

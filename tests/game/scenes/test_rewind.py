@@ -16,6 +16,7 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
+from tests.support.small import learn, pause
 
 POINTS = 5
 
@@ -23,10 +24,8 @@ POINTS = 5
 @pytest.fixture
 def train(train: Driver) -> Driver:
     """A run that has learnt for a while, and is paused."""
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: len(train.top.run.history) >= POINTS)
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
+    learn(train, POINTS)
+    pause(train)
     train.top.open(CHARTS)
     train.frames(14)
     return train
@@ -178,7 +177,7 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     driver.frames(2)
     driver.press_on(texts.TRAIN_GO_ON)
     scene = driver.top
-    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 500)
+    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 100)
     driver.frames(14)
     scene.rewind.go_to(decisions / 2)
     driver.frames(2)

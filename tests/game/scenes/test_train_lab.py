@@ -179,15 +179,6 @@ def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(tra
     assert (run.turns, run.twin.turns) == (before[0] + 1, before[1] + 1)
 
 
-def test_a_run_that_makes_room_for_an_experiment_is_in_the_list(train: Driver) -> None:
-    scene = train.top
-    train.press_on(texts.TRAIN_START)
-    train.wait(lambda: len(scene.run.history) >= 2)
-    split(train)
-    (kept,) = scene.library.runs()
-    assert kept.decisions > 0
-
-
 # The guess
 
 
@@ -313,22 +304,6 @@ def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_
     train.press_on(texts.LAB_KNOBS)
     train.frames(1)
     assert train.choice(texts.TRAIN_AXES[1]).index == 1
-
-
-def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
-    train.press_on(texts.TRAIN_MORE_CHARTS[0])
-    train.press_on(texts.TRAIN_START)
-    scene = train.top
-    painted = {chart.label: chart for chart in scene.charts.charts}
-    success, epsilon = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon"))
-    train.wait(lambda: success.painted_caption and epsilon.painted_caption)
-    assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
-    for _ in range(15):  # in each frame, the number that is written is the caption's
-        train.frames(1)
-        words = texts.CHART_CAPTIONS["epsilon"]
-        captions = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
-        assert epsilon.painted_caption in captions | {words["all"]} or epsilon.caption != epsilon.painted_caption
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:

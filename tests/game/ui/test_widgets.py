@@ -1,20 +1,16 @@
 from collections.abc import Callable
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 import pygame
 import pytest
 
-from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
-from game.input.controls import Command
-from game.scenes.menus.settings import SettingsScene
-from game.ui.actions import hints_of
 from game.ui.context import Context
-from game.ui.form import DOWN, LEFT, RIGHT, UP, Form, neighbour
+from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.listing import shortened
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
@@ -59,10 +55,6 @@ def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Sub
     ]:
         with subtests.test(start=start, direction=direction, end=end):
             assert neighbour(COLUMNS, start, direction) == end
-
-
-def test_a_single_widget_keeps_the_focus():
-    assert neighbour(COLUMNS[:1], 0, DOWN) == 0
 
 
 def test_tab_visits_every_widget_and_comes_round(page: tuple[Driver, Page]):
@@ -126,8 +118,8 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
 
 def test_a_slider_stops_at_its_ticks_as_well_as_at_each_step(context: Context, open_game: Callable[..., Driver]):
     open_game(Page)
-    form, ticks = Form(context), {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
-    slider = SliderRow(form.manager, "", 0.0, (0.0, 1.0), lambda _: None, step=0.1, figure=str, ticks=ticks)
+    ticks = {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
+    slider = SliderRow("", 0.0, (0.0, 1.0), lambda _: None, step=0.1, figure=str, ticks=ticks)
     up, down = [0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.64, 0.7], [0.64, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.04, 0.0]
     for direction, stops in ((1, up), (-1, down)):
         for stop in stops:
@@ -215,11 +207,6 @@ def test_tabular_figures_keep_their_width(canvas: Canvas):
     assert len(widths) == 1
 
 
-def test_rectangles_that_touch_in_points_touch_in_pixels(canvas: Canvas):
-    edges = [canvas.rect(x, 0, 8, 8) for x in range(0, 1280, 8)]
-    assert all(a.right == b.left for a, b in pairwise(edges))
-
-
 def test_texts_are_kept_and_forgotten_with_the_size():
     canvas = Canvas(pygame.Surface((1280, 720)))
     canvas.text("kept", (0, 50))
@@ -234,9 +221,8 @@ def test_a_choice_of_too_many_shows_the_chosen_one_and_opens_a_list():
     opened: list[bool] = []
     manager = PointsManager()
     names = [f"network {number}" for number in range(30)]
-    choice = ChoiceRow(
-        manager, "Flown by", names, 0, lambda _: None, on_open=lambda: opened.append(True), all_word="all 30"
-    )
+    choice = ChoiceRow("Flown by", names, 0, lambda _: None, on_open=lambda: opened.append(True), all_word="all 30")
+    choice.join(manager)
     for width, shown in ((400.0, {0, -1}), (4000.0, set(range(30)))):
         choice.lay(Cursor(64.0, 250.0, width))
         assert choice._places.keys() == shown
@@ -252,18 +238,3 @@ def test_a_choice_of_too_many_shows_the_chosen_one_and_opens_a_list():
     for _ in range(40):
         choice.shift(1)
     assert choice.index == 29
-
-
-def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver]):
-    driver = open_game(SettingsScene, "sound")
-    driver.frames(2)
-    form = driver.top.form
-    seen = set()
-    for widget in form.widgets:
-        form.focus(widget)
-        by_arrows = isinstance(widget, SliderRow)
-        seen.add(by_arrows)
-        expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
-        (hint,) = hints_of([form.changes], driver.app.context.controls)
-        assert hint[:2] == (expected, texts.HINT_CHANGE)
-    assert seen == {True, False}
