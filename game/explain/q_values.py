@@ -13,6 +13,7 @@ import numpy as np
 from ai.agent.decision import Decision
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
+from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
@@ -144,13 +145,13 @@ def decision_words(decision: Decision) -> Sequence[str]:
     if not decision.kept[0]:
         return texts.Q_BEST_FLOWN, ""
     kept, best = (texts.said(ACTION_NAMES[int(action[0])]) for action in (decision.action, decision.best))
-    names = {"kept": kept.capitalize(), "best": best}
+    names = {"kept": capital(kept), "best": best}
     return [line.format(margin=f"{decision.margin:.3g}", **names) for line in texts.Q_KEPT]
 
 
 def value_words(values: QValues, action: int) -> str:
     """Say what the value of an action means now."""
-    name = texts.said(ACTION_NAMES[action]).capitalize()
+    name = capital(texts.said(ACTION_NAMES[action]))
     if not values.readable:
         return texts.EXPLAIN_VALUE_NONE.format(name=name)
     loss, value = values.loss(action), points(values.points[action], 1)

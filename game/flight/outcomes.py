@@ -11,6 +11,7 @@ import numpy as np
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts
+from game.core.catalogue import capital
 
 _LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
 _GOOD: Final = 0.4  # of a limit, up to which a landing is a good one
@@ -75,7 +76,7 @@ def outcome_card(env: LanderEnv, human: float) -> OutcomeCard:
         return OutcomeCard(False, title, reason, figures, human, advice=advice, intact=intact)
     met = qualities(env)
     title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
-    quality = texts.AND.join(texts.QUALITIES[name] for name in met).capitalize()
+    quality = capital(texts.AND.join(texts.QUALITIES[name] for name in met))
     return OutcomeCard(True, title, reason, figures, human, quality=quality)
 
 

@@ -18,6 +18,7 @@ from ai.training.config import Config, InForce
 from ai.training.experiments import sabotaged
 from ai.training.session import Session
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.worker import PATIENCE
 
 KnobKind = Literal["slider", "switch", "words"]
@@ -120,7 +121,7 @@ def _weight(part: Field[Any], live: bool) -> KnobDescription:
     stops = tuple(_rounded(share * default) for share in _SHARES) if default else _COSTS
     word, said = texts.REWARD_PARTS.get(part.name, (part.name, ""))
     advice = texts.KNOB_WEIGHTS.get(part.name, ())
-    return KnobDescription(WEIGHTS, part.name, word.capitalize(), said, REWARD, live, "slider", stops, advice)
+    return KnobDescription(WEIGHTS, part.name, capital(word), said, REWARD, live, "slider", stops, advice)
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:

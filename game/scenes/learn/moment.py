@@ -18,6 +18,7 @@ from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.nn import NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
@@ -268,7 +269,7 @@ class ChoiceChapter(MomentChapter):
     def controls(self, column: Column) -> None:
         for action, name in enumerate(ACTION_NAMES):
             colour, press = NET if action == self.best else INK, partial(self.begin_with, action)
-            column.button(texts.said(name).capitalize(), press, size=SMALL + 1, colour=colour)
+            column.button(capital(texts.said(name)), press, size=SMALL + 1, colour=colour)
         column.button(texts.LEARN_MOMENT_NEXT, self.turn)
 
     def begin_with(self, action: int) -> None:

@@ -16,6 +16,7 @@ from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
 from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.settings import Settings
 from game.flight import sharing
 from game.flight.credit import Credit
@@ -318,7 +319,7 @@ class FlownMission(Challenge):
         much = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
         named = zip(much, (texts.MEDAL_LESS_FUEL, texts.MEDAL_LESS_TIME), strict=True)
         less = texts.AND.join(text.format(each) for each, text in named if each > 0)
-        return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=less)
+        return texts.MEDAL_NEXT.format(medal=capital(texts.MEDALS[medal + 1]), less=less)
 
 
 def _advice(env: LanderEnv) -> str:

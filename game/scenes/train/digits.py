@@ -119,8 +119,8 @@ class DigitTrainingScene(TrainingScene):
         return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
     def _pointers(self) -> list[Pointer]:
-        charts = self.charts
-        pointers: list[Pointer] = [(VirtualPointer((0, 0, 1, 1), charts.follow), lambda: charts.box)]
+        nowhere, charts = (0, 0, 1, 1), self.charts
+        pointers: list[Pointer] = [(VirtualPointer(nowhere, charts.follow), lambda: charts.box)]
         if self.view:
             scrubber = Scrubber(charts, self.film.choose, lambda: None, charts.zoom_by)
             pointers.append((scrubber, lambda: charts.box))

@@ -25,6 +25,7 @@ from ai.training.experiments import (
 from ai.training.messages import DIVERGED
 from game.core import texts
 from game.core.assets import ASSETS_DIR
+from game.core.catalogue import capital
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
 from game.scenes.train.knobs import KnobsPanel
 from game.training.run import TrainingRun
@@ -222,7 +223,7 @@ def listed_differences(before: Config, after: Config) -> str:
     found = []
     for name, (old, new) in differences(before, after).items():
         head, _, part = name.partition(".")
-        word = texts.REWARD_PARTS[part][0].capitalize() if part in texts.REWARD_PARTS else label(head)
+        word = capital(texts.REWARD_PARTS[part][0]) if part in texts.REWARD_PARTS else label(head)
         found.append(texts.LAB_DIFFERS.format(knob=word, before=figure(old), after=figure(new)))
     return ", ".join(found)
 

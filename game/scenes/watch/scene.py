@@ -14,6 +14,7 @@ from ai.files import brief
 from ai.lander.environment import ACTION_NAMES
 from ai.pilots.own import OwnPilot
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, moved
@@ -233,7 +234,7 @@ class WatchScene(FormScene):
         def runs() -> Transition | None:
             outcome = run()
             said = value()
-            self._message = f"{what.capitalize()}: {said}" if said else what.capitalize()
+            self._message = f"{capital(what)}: {said}" if said else capital(what)
             return outcome
 
         return runs

@@ -300,6 +300,11 @@ def test_a_text_is_found_by_name_key_and_place():
     ]
 
 
+def test_a_capital_letter_at_the_beginning_takes_no_other_away():
+    for words, begun in (("coast", "Coast"), ("ohne Schub", "Ohne Schub"), ("ángulo", "Ángulo"), ("", "")):
+        assert catalogue.capital(words) == begun
+
+
 def test_a_language_is_begun_and_brought_up_to_date(tmp_path: Path):
     for path in catalogue.LOCALE.glob("*.pot"):
         (tmp_path / path.name).write_bytes(path.read_bytes())

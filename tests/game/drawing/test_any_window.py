@@ -120,8 +120,7 @@ def test_points_and_pixels_lead_to_each_other():
             pixels = [round(p * canvas.scale + o) for p, o in zip(corner, canvas.origin, strict=True)]
             assert all(-1 <= p <= limit + 1 for p, limit in zip(pixels, size, strict=True)), size
         for place in ((0, 0), (1, 719), (640, 360), (1279.5, 3)):
-            box = canvas.in_window((*place, 1, 1))
-            assert canvas.points(box.topleft) == pytest.approx(place, abs=1 / canvas.scale), size
+            assert canvas.points(canvas.pixels(place)) == pytest.approx(place, abs=1 / canvas.scale), size
 
 
 @settings(deadline=None, max_examples=25)
@@ -131,7 +130,8 @@ def test_the_view_reaches_to_the_edges_of_any_window_with_the_page_in_its_middle
     view, pixel = canvas.view, 1 / canvas.scale
     assert view.inflate(2 * pixel, 2 * pixel).contains(PAGE)
     assert view.center == pytest.approx(PAGE.center, abs=2 * pixel)
-    assert canvas.in_window(view) == pygame.Rect(0, 0, width, height)
+    assert canvas.pixels(view.topleft) == pytest.approx((0, 0), abs=1)
+    assert canvas.pixels(view.bottomright) == pytest.approx((width, height), abs=1)
     for across, down in product((-1, 0, 1), repeat=2):
         moved = canvas.at(across, down)
         corner = canvas.points(moved.pixels((0, 0)))  # of the moved page, on the canvas

@@ -195,6 +195,9 @@ def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game:
     assert progress.guess("neuron") == 1
     beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
     assert (beyond.guess("neuron"), beyond.answer("neuron")) == (None, ""), "it has three answers"
+    for why, came in ((3, 9), (None, -1), ([], "2")):
+        kept = Progress(Settings(learnt={"neuron": {"why": why, "language": "en", "came": came}}))
+        assert kept.shown("neuron") == ("", None)
     for learnt in ([], 7, "x"):
         assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
 

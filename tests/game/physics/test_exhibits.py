@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from game.core import texts
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.exhibits import EXHIBITS, Heap, Impacts, Spin, Stack
 from game.scenes.physics.falls import Bounce, DragRace, Slopes
 from game.scenes.physics.scene import GRAVITIES
-from game.scenes.physics.bodies import Grip
 
 MOON, EARTH = GRAVITIES
 FEW = {"count": 20.0}  # bodies of a heap: a hundred take long

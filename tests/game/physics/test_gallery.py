@@ -11,10 +11,10 @@ import pytest
 from game.cli import add_commands
 from game.core import texts
 from game.drawing.tokens import HUMAN, NET
+from game.scenes.physics.bodies import scale_force
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import GRAVITIES, PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
-from game.scenes.physics.bodies import scale_force
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.screens import fallen

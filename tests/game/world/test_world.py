@@ -11,10 +11,10 @@ from engine import Circle, Polygon, Sprite, World
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import EMBER, HUMAN, INK
-from game.scenes.physics.exhibits import EXHIBITS
-from game.world import bodies
-from game.world import lander as art
+from game.scenes.physics import bodies
 from game.scenes.physics.bodies import Outlines
+from game.scenes.physics.exhibits import EXHIBITS
+from game.world import lander as art
 from game.world.camera import Camera, View
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.themes import LOOKS, look_of
