@@ -11,7 +11,8 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.replay import MemoryCell
 from ai.copilot.copilot import CoPilot
 from ai.digits.classifier import DigitClassifier
-from ai.lander.environment import LanderEnv, Outcome, StepResult
+from ai.environment import StepResult
+from ai.lander.environment import LanderEnv, Outcome
 from ai.training.config import PRESETS
 from ai.training.loop import Progress
 from game.core.scene import Pop, Push, Quit, Replace, Scene
