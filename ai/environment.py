@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, Protocol
+from typing import Any, Final, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.intp]
+T = TypeVar("T")
 SUCCESS: Final = 1  # the outcome of an episode that ended well, in every environment; 0 is one that goes on
 
 
@@ -62,3 +63,13 @@ class Env(Protocol):
 
     def step(self, actions: Ints) -> StepResult:
         """Take one action in every slot that has not ended."""
+
+
+def finished(flying: Generator[None, None, T]) -> T:
+    """Take what goes on bit by bit to its end; return what came of it."""
+    while True:
+        try:
+            next(flying)
+        except StopIteration as end:
+            found: T = end.value
+            return found

@@ -23,9 +23,10 @@ import numpy as np
 
 from ai.lander.pilots import ScriptedPilot
 from ai.training.config import PRESETS, Config
-from ai.training.demonstrations import Demonstration, demonstrate, teach
+from ai.training.demonstrations import Demonstration, teach
 from ai.training.loop import Training
 from benchmarks.learning import Checkpoint, race
+from tests.support.demonstrated import demonstrate
 
 SHARE = 0.95
 PAUSE = {"modern": 1.0, "classic": 15.0}  # seconds between two looks at the network

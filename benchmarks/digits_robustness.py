@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ai.digits.classifier import DigitClassifier, load_part, preprocess
-from ai.digits.preprocessing import enlarge
+from ai.digits.classifier import DigitClassifier
+from ai.digits.mnist import load_part
+from ai.digits.preprocessing import _resample, preprocess
 from ai.digits.strokes import draw_strokes
 from ai.digits.training import accuracy
 from tests.support.digit_styles import template_strokes
@@ -32,7 +33,7 @@ def drawn(digit, rng, size=520):
 
 def aside(image):
     canvas = np.zeros((280, 280), np.float32)
-    canvas[5:257, 19:271] = enlarge(image, 252)
+    canvas[5:257, 19:271] = _resample(image, (14, 14), 28 / 252, 252)
     return canvas
 
 

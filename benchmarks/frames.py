@@ -76,7 +76,7 @@ from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.shell.app import App
 from game.ui.context import Context
-from game.world.landscape.backdrop import forget_land
+from game.world.landscape.backdrop import landscape
 from tests.support.lessons import lesson_of
 from tests.support.screens import FLOWN as FLIGHTS
 from tests.support.screens import SCREENS
@@ -248,7 +248,7 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
         while not idle():
             app.tick()
         if row.cold:
-            forget_land()
+            landscape.cache_clear()
         for frame in range(-1, row.times * FRAMES):
             if frame >= 0:
                 act(app.scenes.top, row.keys, frame, app)
@@ -290,7 +290,7 @@ def act(scene: Scene, keys: tuple[int, ...], frame: int, app: App) -> None:
             if frame % 500 == at + 40 * number:
                 pygame.event.post(pygame.event.Event(event, key=key, mod=0, unicode="", scancode=0))
     if pad := getattr(scene, "pad", None):
-        box, turn = app.canvas.in_window(pad.rect), frame / 20
+        box, turn = app.canvas.rect(*pad.rect), frame / 20
         place = box.centerx + box.width / 3 * math.sin(turn), box.centery + box.height / 3 * math.sin(1.3 * turn)
         kinds = {10: pygame.MOUSEBUTTONDOWN, 110: pygame.MOUSEBUTTONUP}
         event = kinds.get(frame % 120, pygame.MOUSEMOTION)

@@ -51,7 +51,7 @@ def draw_icons(folder: Path) -> None:
     import pygame
     from PIL import Image
 
-    from game.drawing.icon import draw_icon
+    from game.shell.window import draw_icon
 
     folder.mkdir(parents=True, exist_ok=True)
     surface = draw_icon(256)

@@ -140,13 +140,11 @@ def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, A
 
 def agent_state(agent: DeepQAgent) -> dict[str, Any]:
     """Return copies of all that an agent's learning goes on from, besides its settings and replay buffers."""
-    return {
-        "decisions": agent.decisions, "gradient_steps": agent.gradient_steps, "loss": agent.loss,
-        "mean_q": agent.mean_q, "rng": agent.rng.bit_generator.state, "online": agent.online.values.copy(),
-        "target": agent.target.values.copy(), "optimizer": agent.optimizer.state(),
-        "normalizer": agent.normalizer.to_json() if agent.normalizer else None,
-        "n_step": agent.n_step.state(), "episodes": agent.episodes.state(),
-    }  # fmt: skip
+    normalizer = agent.normalizer.to_json() if agent.normalizer else None
+    numbers = {name: getattr(agent, name) for name in ("decisions", "gradient_steps", "loss", "mean_q")}
+    networks = {"online": agent.online.values.copy(), "target": agent.target.values.copy()}
+    learning = {"rng": agent.rng.bit_generator.state, "optimizer": agent.optimizer.state(), "normalizer": normalizer}
+    return numbers | networks | learning | {"n_step": agent.n_step.state(), "episodes": agent.episodes.state()}
 
 
 def load_agent_state(agent: DeepQAgent, state: Mapping[str, Any], num_envs: int) -> None:

@@ -16,14 +16,8 @@ if TYPE_CHECKING:
 
 _RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
 _BUDGET: Final = (1, 10**12)
-_RANGES: Final = {
-    "trials": (1, 100_000), "seeds": _RUNS, "population": _RUNS, "decisions": _BUDGET, "every": _BUDGET,
-    "validation": cli.EPISODES, "seed": cli.SEEDS, "workers": cli.WORKERS,
-}  # fmt: skip
 # Options of a plan, which a study keeps: as they are, and what they are made into.
-_PLAN: Final = (
-    "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
-)  # fmt: skip
+_PLAN: Final = "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed"
 _OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "preset", "changes", "digits")
 
 
@@ -37,20 +31,16 @@ def add_commands(commands: Any) -> None:
     add("--resume", action="store_true", help="go on with a study; --trials may ask for more")
     add("--trials", type=int, metavar="N", help="trials in all (default: 64)")
     add("--seeds", type=int, metavar="N", help="runs of each trial, seeds 0 to N-1 (default: 3)")
-    add("--metric", metavar="NAME", help="what trials are compared by: time_to_99 or any percentage, in decisions;"
-        " success, return, mean, accuracy (default: by what is trained)")  # fmt: skip
-    add("--knobs", metavar="NAMES", help="knobs or groups to search by their own ranges, with commas between"
-        " (default: learning, the whole group)")  # fmt: skip
+    add("--metric", metavar="NAME", help="compare trials by time_to_99 (any share), success, return, mean or accuracy")
+    add("--knobs", metavar="NAMES", help="knobs or groups to search, with commas between (default: learning, a group)")
     add("--space", type=Path, metavar="FILE", help="knobs to search, with ranges, as JSON")
-    add("--search", choices=("tpe", "random", "population"), help="how settings are proposed: by Optuna, at random, or"
-        " in a population that copies its best (default: tpe)")  # fmt: skip
+    add("--search", choices=("tpe", "random", "population"), help="how settings are proposed (default: tpe, by Optuna)")
     add("--population", type=int, metavar="N", help="members of a generation (default: 8)")
     add("--stop-early", action="store_true", default=None, help="end trials that fall behind (ASHA)")
     add("--decisions", type=int, metavar="N", help="length of each run (default: 250,000)")
     add("--every", type=int, metavar="N", help="decisions or epochs between two measurements")
     add("--validation", type=int, metavar="N", help="episodes of a measurement, as for train")
-    add("--env", metavar="NAME", help="an environment of Gymnasium (default: our own lander); with --resume only to"
-        " allow a study one whose name is module:Name")  # fmt: skip
+    add("--env", metavar="NAME", help="an environment of Gymnasium (default: our own lander)")
     add("--digits", action="store_true", default=None, help="train networks that read digits")
     add("--preset", help="settings of all that is not searched, as for train or train-digits")
     add("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
@@ -73,7 +63,8 @@ def _sweep(arguments: argparse.Namespace) -> int:
 
     if not installed():
         raise ImportError(MISSING)
-    cli.check_ranges(arguments, **_RANGES)
+    cli.check_ranges(arguments, trials=(1, 100_000), validation=cli.EPISODES, seed=cli.SEEDS, workers=cli.WORKERS)
+    cli.check_ranges(arguments, seeds=_RUNS, population=_RUNS, decisions=_BUDGET, every=_BUDGET)
     place = _place(arguments)
     if arguments.address is not None:
         answering(arguments.address)  # before there is a study

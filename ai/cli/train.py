@@ -20,9 +20,7 @@ if TYPE_CHECKING:
     from ai.training.config import Config
     from ai.training.run import Limit
 
-_RANGES: Final = {
-    "decisions": (1, 10**12), "validation": cli.EPISODES, "seed": cli.SEEDS, "seconds": cli.SECONDS,
-}  # fmt: skip
+_RANGES: Final = {"decisions": (1, 10**12), "validation": cli.EPISODES, "seed": cli.SEEDS, "seconds": cli.SECONDS}
 _LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
 _PARTS: Final = 1000  # of the bar
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
@@ -34,26 +32,23 @@ def add_commands(commands: Any) -> None:
     """Add `train` and `train-digits` to a parser's sub-commands."""
     land = commands.add_parser("train", help="teach a network to land, or to master another environment")
     read = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
-    land.add_argument("--env", metavar="NAME",
-                      help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)")  # fmt: skip
-    land.add_argument("--preset", help="modern, classic or anywhere, which lands on any world (default: modern; for"
-                      " --env, settings of its own)")  # fmt: skip
-    land.add_argument("--decisions", type=int, help="stop when the whole run, resumed or not, has taken so many"
-                      " decisions; begun anew with the same seed, it gives the same network")  # fmt: skip
-    land.add_argument("--validation", type=int, metavar="N", help="episodes that choose the best network")
-    read.add_argument("--preset", help="modern, classic, thorough, which made the shipped modern network, or"
-                      " as-described, the recipe of one epoch that classic grew from (default: modern)")  # fmt: skip
-    read.add_argument("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
+    add = land.add_argument
+    add("--env", metavar="NAME", help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)")
+    add("--preset", help="modern, classic or anywhere, which lands on any world (default: modern, or as --env needs)")
+    add("--decisions", type=int, help="stop when the whole run, resumed or not, has taken so many decisions")
+    add("--validation", type=int, metavar="N", help="episodes that choose the best network")
+    add = read.add_argument
+    add("--preset", help="modern, classic, as-described, or thorough, which made what is shipped (default: modern)")
+    add("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
     for command, run, example in ((land, _train, "n_step=5"), (read, _train_digits, "dropout=0.5")):
         add = command.add_argument
         add("--seconds", type=float, help="stop when the whole run, resumed or not, has trained for so many seconds")
         add("--output", type=cli.folder, metavar="DIR", help="where to keep the network")
-        add("--resume", type=cli.folder, metavar="DIR", help="go on with the run that is kept there, by its settings;"
-            " --set and --preset may change those that can change while a run goes on")  # fmt: skip
+        add("--resume", type=cli.folder, metavar="DIR", help="go on with the run there; only live settings may change")
         add("--replace", action="store_true", help="put the new run in the place of an earlier one")
         add("--seed", type=int, help="what all chance follows from (default: 0)")
-        add("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
-            help=f"change a setting of the preset, such as --set {example}")  # fmt: skip
+        changed = f"change a setting of the preset, such as --set {example}"
+        add("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes", help=changed)
         command.set_defaults(run=run)
 
 

@@ -9,19 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, NamedTuple, Protocol, TypeVar
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
-from ai.environment import Bools, Doubles, Ints
+from ai.environment import Bools, Doubles, Ints, T, finished
 from ai.lander.environment import LanderEnv, LanderParams, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES, nearest_action
 from engine import DT
-
-T = TypeVar("T")
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
 LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
@@ -179,16 +177,6 @@ class FlownAhead(Protocol):
 Flying = Generator[None, None, T]  # yields after each decision, and returns what comes of it
 
 
-def finished(flying: Flying[T]) -> T:
-    """Fly to the end; return what comes of it."""
-    while True:
-        try:
-            next(flying)
-        except StopIteration as end:
-            found: T = end.value
-            return found
-
-
 class Lookahead:
     """Futures of a network, flown in batches. It keeps its environments for the next ones over the same ground.
 
@@ -242,8 +230,8 @@ class Lookahead:
         pads = [_pads_of(moment, row) for row in range(len(moment))]
         plans: list[Plan | None] = [None] * len(asked)
         for tried in slice(1), slice(1, None):  # most land where they were meant to; the other pads are for the rest
-            left = [(index, pad) for index, (row, _) in enumerate(asked) if plans[index] is None
-                    for pad in pads[row][tried]]  # fmt: skip
+            rows = [(index, row) for index, (row, _) in enumerate(asked) if plans[index] is None]
+            left = [(index, pad) for index, row in rows for pad in pads[row][tried]]
             for first in range(0, len(left), _BATCH):
                 batch = left[first : first + _BATCH]
                 found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in batch])
@@ -306,11 +294,11 @@ class Lookahead:
                 masks[:, : len(left)] = flies[left], waits[left], down[left]
                 env, future = self._begin(Moment.of(env).take(left), future[left])
                 flies, waits, down = masks
-        return [
-            (Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
-                  shares[:end, row].copy(), states[: end + 1, row].copy()), bool(landed[row]))
-            for row, end in enumerate(flown.tolist())
-        ]  # fmt: skip
+        found = []
+        for row, end in enumerate(flown.tolist()):
+            way = actions[:end, row].copy(), shares[:end, row].copy(), states[: end + 1, row].copy()
+            found.append((Plan(int(start.steps[row]), start.fall(row), asked[row][2], *way), bool(landed[row])))
+        return found
 
     def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:
         """Return the network's actions (n,), and their shares of thrust, (n, 2)."""

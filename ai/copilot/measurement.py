@@ -20,8 +20,7 @@ from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
 from ai.training.statistics import wilson
 
-SOME: Final = ("slow", "holds right", "a key each second", "thrust 0.3",
-               "adversary, random")  # fmt: skip
+SOME: Final = "slow", "holds right", "a key each second", "thrust 0.3", "adversary, random"
 ALONE: Final = "alone"
 VALUES: Final = "guardian by values"  # without futures
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
@@ -113,8 +112,8 @@ def _measure(
         _, success, crash, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
         changed = float(overridden[mine].sum() / decisions[mine].sum())
         on_own, planned, lost = (float(each[mine].mean()) for each in (own, held, held & ~landed))
-        found.append(AssistedFlights(name, str(mode), assist, episodes, success, crash, gone, late, changed, on_own,
-                                     planned, lost))  # fmt: skip
+        came = success, crash, gone, late, changed, on_own, planned, lost
+        found.append(AssistedFlights(name, str(mode), assist, episodes, *came))
     return found
 
 

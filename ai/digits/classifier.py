@@ -9,17 +9,11 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.digits.mnist import MnistError, load_mnist, load_part
-from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
+from ai.digits.preprocessing import SIDE
 from ai.files import CONFIG, FolderKind, atomic_folder, check_header, inside, problem_in, read_json, recover_folder
 from ai.files import NETWORK as NETWORK_KIND
 from ai.nn import ModelFormatError, NeuralNetwork
 from ai.nn.costs import softmax
-
-__all__ = [
-    "DigitClassifier", "Image", "MnistError", "Stages", "load_mnist", "load_part", "preprocess",
-    "preprocess_strokes", "stages",
-]  # fmt: skip
 
 DIGITS_FILE: Final = CONFIG  # of a classifier's folder; its network is in a folder within
 NETWORK: Final = "network"

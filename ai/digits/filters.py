@@ -25,8 +25,8 @@ class FilterMoment:
     images: npt.NDArray[np.float16]  # (n, height, width), as `first_filters` returns them
 
 
-def first_filters(network: NeuralNetwork, most: int | None = MOST_FILTERS) -> npt.NDArray[np.float32]:
-    """Return the first learned layer's weights as images (n, height, width), of the first `most` filters or units.
+def first_filters(network: NeuralNetwork) -> npt.NDArray[np.float32]:
+    """Return the first learned layer's weights as images (n, height, width), of its first filters or units.
 
     An empty array of (0, 1, 1) for a network whose first learned layer reads no image.
     """
@@ -37,7 +37,7 @@ def first_filters(network: NeuralNetwork, most: int | None = MOST_FILTERS) -> np
         images = first.weights.T.reshape(-1, SIDE, SIDE)
     else:
         return np.empty((0, 1, 1), np.float32)
-    return np.array(images[:most], np.float32)
+    return np.array(images[:MOST_FILTERS], np.float32)
 
 
 def next_moment(seconds: float) -> float:

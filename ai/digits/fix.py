@@ -10,8 +10,9 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from ai.digits.augmentation import Strength, augment
-from ai.digits.classifier import DIGITS, DigitClassifier, Image
+from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
+from ai.digits.preprocessing import Image
 from ai.digits.training import accuracy
 from ai.nn import Adam, Array
 
@@ -45,12 +46,7 @@ class Fixed:
 
 
 def steps_to_fix(
-    classifier: DigitClassifier,
-    image: Image,
-    digit: int,
-    data: tuple[Images, Labels],
-    rng: np.random.Generator,
-    steps: int = STEPS,
+    classifier: DigitClassifier, image: Image, digit: int, data: tuple[Images, Labels], rng: np.random.Generator
 ) -> Generator[FixStep, None, None]:
     """Fine-tune a classifier, in place, to read an image (28, 28) as `digit`; end as soon as it is sure of it.
 
@@ -65,7 +61,7 @@ def steps_to_fix(
         raise ValueError("there is nothing to learn from: the image is empty, or not finite")
     network, (images, labels) = classifier.network, data
     optimizer = Adam(LEARNING_RATE)
-    for step in range(steps):
+    for step in range(STEPS):
         if (probability := _probability(classifier, image, digit)) >= ENOUGH:
             return
         yield FixStep(step, probability)
@@ -75,7 +71,7 @@ def steps_to_fix(
         batch = np.concatenate([copies, images[chosen]])
         targets = _one_hot(np.concatenate([np.full(COPIES, digit), labels[chosen]]))
         network.train_batch(classifier.shaped(batch), targets, optimizer)
-    yield FixStep(steps, _probability(classifier, image, digit))
+    yield FixStep(STEPS, _probability(classifier, image, digit))
 
 
 def fix(

@@ -117,11 +117,6 @@ def stages(
     return Stages(drawn, cropped, fitted, thinned, _placed(ink, middle, cells, centre))
 
 
-def enlarge(image: Image, size: int) -> Image:
-    """Return a square image at (size, size) pixels, smooth where it grows."""
-    return _resample(image, (len(image) / 2, len(image) / 2), len(image) / size, size)
-
-
 def _clean(canvas: npt.ArrayLike) -> Image:
     array = np.asarray(canvas)
     if array.ndim != 2:

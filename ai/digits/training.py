@@ -147,10 +147,8 @@ class DigitTraining(Run):
         self._accuracy += (accuracy - self._accuracy) * 0.05
         held_out = self._measure() if self.step % self.steps_per_epoch == 0 else None
         spent = self.clock() - began
-        return DigitProgress(
-            self.step / self.steps_per_epoch, self.step, self.steps, loss, accuracy, rate,
-            len(batch) / spent if spent > 0 else 0.0, held_out, self.best,
-        )  # fmt: skip
+        epochs, pace = self.step / self.steps_per_epoch, len(batch) / spent if spent > 0 else 0.0
+        return DigitProgress(epochs, self.step, self.steps, loss, accuracy, rate, pace, held_out, self.best)
 
     def _changed(self, images: Images, labels: Labels, rng: np.random.Generator) -> Images:
         config = self.config
@@ -214,12 +212,11 @@ class DigitTraining(Run):
 
         A `final` one is measured on MNIST's test images; raises MnistError if there are none.
         """
-        best, presets = self.best_classifier(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}
-        described = {
-            **nearest_preset(self.config.to_json(), presets), "seed": self.seed, "step": self.step,
-            "epochs": self.step // self.steps_per_epoch, "seconds": round(self.seconds, 3), "held_out": self.best,
-            "kept_epoch": self.best_epoch, "history": [*self.history],
-        }  # fmt: skip
+        best = self.best_classifier()
+        epochs, seconds = self.step // self.steps_per_epoch, round(self.seconds, 3)
+        described = nearest_preset(self.config, DIGIT_PRESETS) | {"seed": self.seed, "step": self.step}
+        described |= {"epochs": epochs, "seconds": seconds, "held_out": self.best}
+        described |= {"kept_epoch": self.best_epoch, "history": [*self.history]}
         if final:
             described["test"] = accuracy(best, *load_part(TEST))
         return described, best.write
@@ -236,12 +233,12 @@ class DigitTraining(Run):
 
     def state(self) -> dict[str, Any]:
         """Return copies of what it goes on from; each step has its own randomness."""
-        return {
-            "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
-            "best_values": None if self.best_values is None else self.best_values.copy(),
-            "loss": self._loss, "accuracy": self._accuracy, "values": self.classifier.network.values.copy(),
-            "average": self.average.copy(), "optimizer": self.optimizer.state(),
-        }  # fmt: skip
+        best_values = None if self.best_values is None else self.best_values.copy()
+        state: dict[str, Any] = {"step": self.step, "seconds": self.seconds, "best": self.best}
+        state |= {"best_values": best_values}
+        state |= {"history": [*self.history], "loss": self._loss, "accuracy": self._accuracy}
+        state |= {"values": self.classifier.network.values.copy(), "average": self.average.copy()}
+        return state | {"optimizer": self.optimizer.state()}
 
     def load_state(self, state: dict[str, Any] | None, folder: Path) -> bool:
         """Go on from what `state` returned; nothing goes on without one."""
@@ -266,10 +263,10 @@ def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> flo
     return float((classifier.predict(images).argmax(axis=1) == labels).mean())
 
 
-def confusion(classifier: DigitClassifier, images: Images, labels: Labels) -> npt.NDArray[np.intp]:
-    """Return how often each digit (row) was read as which (column), (10, 10)."""
-    table = np.zeros((10, 10), np.intp)
-    np.add.at(table, (labels, classifier.predict(images).argmax(axis=1)), 1)
+def confusion(labels: npt.NDArray[Any], read: npt.NDArray[np.intp]) -> npt.NDArray[np.int64]:
+    """Return how often each digit (row) was read as which (column), (10, 10), by labels and answers (n,)."""
+    table = np.zeros((10, 10), np.int64)
+    np.add.at(table, (labels, read), 1)
     return table
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.digits.classifier import DIGITS, DigitClassifier
-from ai.digits.training import DigitTraining
+from ai.digits.training import DigitTraining, confusion
 from ai.nn import Array
 
 EXAMPLES: Final = 12  # misread images of a kind that are shown
@@ -51,13 +51,11 @@ class ValidationReading:
     def result(self) -> tuple[float, Confusion]:
         """Return accuracy and confusion matrix of the network."""
         labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
-        table = np.zeros((DIGITS, DIGITS), np.int64)
-        np.add.at(table, (labels, read), 1)
-        kinds = labels * DIGITS + read
+        table, kinds = confusion(labels, read), labels * DIGITS + read
         wrong = np.flatnonzero(labels != read)
         chosen = np.sort(
             np.concatenate([wrong[:0], *(wrong[kinds[wrong] == kind][:EXAMPLES] for kind in np.unique(kinds[wrong]))])
         )
         images = (self._images[chosen] * 255).astype(np.uint8)
-        accuracy = float(table.trace() / len(labels))
-        return accuracy, Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
+        cells = np.stack([labels[chosen], read[chosen]], axis=1)
+        return float(table.trace() / len(labels)), Confusion(table, cells, images)

@@ -69,14 +69,9 @@ class Lesson:
 
 @dataclass(frozen=True, eq=False)
 class Before:
-    """All that a learning step depends on: the agent before it, and the minibatch that it is handed."""
+    """All that a learning step depends on: a copy of the agent before it, and the minibatch that it is handed."""
 
-    config: AgentConfig
-    decisions: int
-    online: Floats  # (parameters,) of the two networks
-    target: Floats
-    optimizer: dict[str, Any]  # what `Optimizer.state` returned
-    normalizer: dict[str, Any] | None  # of observations
+    agent: DeepQAgent
     cells: Transition  # the minibatch, (batch, ...), as it was drawn; one of them gives way to the memory of the lesson
     weights: Floats  # (batch,) of them in the cost
 
@@ -84,20 +79,25 @@ class Before:
     def of(cls, agent: DeepQAgent, rng: np.random.Generator) -> Before:
         """Return a copy of all that the next learning step of an agent depends on; `rng` draws the minibatch."""
         cells, _, weights = agent.replay.sample(agent.config.batch_size, rng)
-        normalizer = agent.normalizer.to_json() if agent.normalizer else None
-        online, target = agent.online.values.copy(), agent.target.values.copy()
-        optimizer = agent.optimizer.state()
-        return cls(agent.config, agent.decisions, online, target, optimizer, normalizer, cells, weights)
+        return cls(_copied(agent, agent.config), cells, weights)
 
 
-def explain(before: Before, cell: Transition, agent: DeepQAgent, flown: Flown | None = None) -> Lesson:
+def _copied(agent: DeepQAgent, config: AgentConfig, **parts: Any) -> DeepQAgent:
+    """Return an agent that goes on from another, by a configuration whose networks are of the same sizes."""
+    sizes, rng = (agent.num_features, agent.num_actions), np.random.default_rng(0)
+    twin = DeepQAgent(*sizes, config, rng, symmetry=agent.symmetry, **parts)
+    twin.copy_from(agent)
+    twin.gradient_steps = 0
+    return twin
+
+
+def explain(before: Before, cell: Transition, flown: Flown | None = None) -> Lesson:
     """Take the learning step that follows from `before` with `cell` in its minibatch, and return all of it.
 
-    `agent` is one of the same sizes and symmetry, which is not changed. Raises DivergenceError as the step does, and
-    ValueError for a network that is too large.
+    Raises DivergenceError as the step does, and ValueError for a network that is too large.
     """
     row = len(before.weights) // 2  # the first half of a minibatch may be mirrored
-    twin = _twin(before, cell, row, agent)
+    twin = _twin(before, cell, row)
     recorder, step = recorded_step(twin.learn, twin.online, twin.optimizer, _AGENT, row)
     # What both networks said of the next states.
     said = {id(call.owner): call.values[RETURN] for call in recorder.calls(NeuralNetwork.predict)}
@@ -105,8 +105,8 @@ def explain(before: Before, cell: Transition, agent: DeepQAgent, flown: Flown | 
         recorder.call(each).values for each in (DeepQAgent.gradient_step, DeepQAgent._next_value, DeepQAgent.targets)
     )
     return Lesson(
-        config=before.config,
-        decisions=before.decisions,
+        config=before.agent.config,
+        decisions=before.agent.decisions,
         flown=flown,
         cell=cell,
         state=taken["states"][row],
@@ -145,20 +145,13 @@ class _HandedBatch(ReplayBuffer):
         return self._drawn
 
 
-def _twin(before: Before, cell: Transition, row: int, agent: DeepQAgent) -> DeepQAgent:
+def _twin(before: Before, cell: Transition, row: int) -> DeepQAgent:
     """Return an agent that is about to take the learning step, with the memory in a row of its minibatch."""
     cells = Transition(*(np.array(part) for part in before.cells))
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
-    config = before.config.changed(gradient_steps=1, success_pass=False, batch_size=len(before.weights))
-    twin = DeepQAgent(agent.num_features, agent.num_actions, config, np.random.default_rng(0),
-                      symmetry=agent.symmetry, replay=_HandedBatch(cells, before.weights))  # fmt: skip
-    twin.online.values, twin.target.values = before.online, before.target
-    twin.optimizer.load_state(before.optimizer, before.online)
-    if before.normalizer is not None and twin.normalizer is not None:
-        twin.normalizer.load(before.normalizer)
-    twin.decisions = before.decisions
-    return twin
+    config = before.agent.config.changed(gradient_steps=1, success_pass=False, batch_size=len(before.weights))
+    return _copied(before.agent, config, replay=_HandedBatch(cells, before.weights))
 
 
 class LearnedAlone:

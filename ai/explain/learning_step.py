@@ -62,8 +62,8 @@ def forward_functions(network: NeuralNetwork) -> list[Function]:
 def backward_functions(network: NeuralNetwork, optimizer: Optimizer) -> list[Function]:
     """Return the functions from the derivative of the cost to the step of the optimizer."""
     ways = [(kind.backward_propagate, kind.fill_gradients, kind.input_error) for kind in _kinds(network)]
-    return [NeuralNetwork.backward_propagate, *(each for way in ways for each in way),
-            Optimizer.step, type(optimizer)._fill_step]  # fmt: skip
+    through = [each for way in ways for each in way]
+    return [NeuralNetwork.backward_propagate, *through, Optimizer.step, type(optimizer)._fill_step]
 
 
 def recorded_step(

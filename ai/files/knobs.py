@@ -63,6 +63,11 @@ class Knobs:
         """Return the values as JSON can hold them, by field."""
         return asdict(self)
 
+    def differences(self, other: Self) -> dict[str, Any]:
+        """Return the values that `other` does not have, by field, as JSON can hold them."""
+        theirs = other.to_json()
+        return {name: value for name, value in self.to_json().items() if value != theirs[name]}
+
     @classmethod
     def from_json(cls, values: Mapping[str, Any]) -> Self:
         """Read what `to_json` wrote, now or under former names; raises ValueError for unknown names and bad values."""
@@ -173,10 +178,8 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def nearest_preset(given: Mapping[str, Any], presets: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Name the preset with the fewest settings different, and those settings; all as `to_json` gives them."""
-    changes = {
-        name: {key: value for key, value in given.items() if value != preset[key]} for name, preset in presets.items()
-    }
+def nearest_preset(config: Knobs, presets: Mapping[str, Knobs]) -> dict[str, Any]:
+    """Name the preset with the fewest settings different, and those settings."""
+    changes = {name: config.differences(preset) for name, preset in presets.items()}
     nearest = min(changes, key=lambda name: len(changes[name]))
     return {"preset": nearest, "changes": changes[nearest]}

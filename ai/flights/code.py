@@ -81,10 +81,9 @@ class _Content(Start):
 def code_of(flight: SharedFlight) -> str:
     """Return the code of a flight."""
     recording, claim = flight.recording, flight.claim
-    values = recording.start() | {
-        "course": flight.course, "barred": flight.barred[:_LONGEST_NAME], "outcome": claim.outcome.name,
-        "points": claim.points, "end": [round(_GRID * min(max(number, -_FAR), _FAR)) for number in claim.end],
-    }  # fmt: skip
+    end = [round(_GRID * min(max(number, -_FAR), _FAR)) for number in claim.end]
+    values = recording.start() | {"course": flight.course, "barred": flight.barred[:_LONGEST_NAME]}
+    values |= {"outcome": claim.outcome.name, "points": claim.points, "end": end}
     packer = zlib.compressobj(9, wbits=-zlib.MAX_WBITS, memLevel=9, zdict=_USUAL)
     data = packer.compress(json.dumps(values, separators=(",", ":")).encode() + b"\n" + _packed(recording))
     data += packer.flush()
@@ -106,11 +105,8 @@ def _packed(recording: Recording) -> bytes:
         (action - known) % 6 + 6 * (hand is StickHolder.NETWORK)
         for action, known, hand in zip(actions, asked, recording.hands, strict=True)
     ]
-    return bytes(
-        each + _HELD * (min(_RUN, left) - 1)
-        for each, same in groupby(held)
-        for left in range(len(list(same)), 0, -_RUN)
-    ) + moves  # fmt: skip
+    runs = ((each, range(len(list(same)), 0, -_RUN)) for each, same in groupby(held))
+    return bytes(each + _HELD * (min(_RUN, left) - 1) for each, steps in runs for left in steps) + moves
 
 
 def _asked(places: list[Shares]) -> list[int]:

@@ -123,10 +123,8 @@ def is_true(flight: SharedFlight, real: Earned) -> bool:
     """Whether a flight was flown where it says, and really earned what it claims."""
     claim, steps = flight.claim, len(flight.recording.actions)
     away = max(abs(claimed - flown) for claimed, flown in zip(claim.end, real.end, strict=True))
-    return (
-        in_its_place(flight) and away <= TOLERANCE and claim.medal <= real.medal
-        and (claim.outcome, claim.points, steps) == (real.outcome, real.points, real.steps)
-    )  # fmt: skip
+    alike = (claim.outcome, claim.points, steps) == (real.outcome, real.points, real.steps)
+    return in_its_place(flight) and alike and away <= TOLERANCE and claim.medal <= real.medal
 
 
 def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:

@@ -158,7 +158,7 @@ class AnywhereEnv(LanderEnv):
         self._air[:, :2] = np.array(site.air)[:, None]
         self.params = replace(PARAMS, main_thrust=site.thrust, quadratic_drag=site.air)
         self.limits = replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time)
-        self.conditions = Conditions(site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back),
-                                     site.swing, site.swing_period)  # fmt: skip
+        wind, outage = (site.wind, site.gust, site.gust_period), (site.dead, site.back)
+        self.conditions = Conditions(*wind, site.tank, outage, site.swing, site.swing_period)
         self.target = np.array(site.pad, dtype=np.intp)
         self.world.state.active[:, self.pad_bodies] = self.target[:, None] == np.arange(len(_PADS))

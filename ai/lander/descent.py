@@ -211,8 +211,8 @@ class _Rock:
         top = bottom + 2.4
         self._hills.append(((wall, self.base), (wall + 0.3, top), (wall + 3.2, top + 0.6), (wall + 5.6, self.base)))
         lip = goal.x - reach
-        self._roofs.append(((lip, bottom + 0.9), (lip + 0.7, bottom + 0.2), (wall + 1.0, bottom),
-                            (wall + 1.0, top), (lip + 1.0, bottom + 1.7)))  # fmt: skip
+        under = (lip, bottom + 0.9), (lip + 0.7, bottom + 0.2), (wall + 1.0, bottom)
+        self._roofs.append((*under, (wall + 1.0, top), (lip + 1.0, bottom + 1.7)))
         self._way.append((lip - 3.5, goal.top + 3.6))
         self._last = (goal.x - 0.5, goal.top + 3.2)
 

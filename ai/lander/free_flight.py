@@ -114,9 +114,11 @@ class FreeFlight:
 
         It need not where a face of every rock has the whole craft before it: a separating axis, as in `engine.collide`.
         """
-        reach = self._reach
-        near = [faces for (left, low, right, high), faces in self._rocks
-                if y - reach <= high and low <= y + reach and x - reach <= right and left <= x + reach]  # fmt: skip
+        west, east, below, above = x - self._reach, x + self._reach, y - self._reach, y + self._reach
+        near = []
+        for (left, low, right, high), faces in self._rocks:
+            if below <= high and low <= above and west <= right and left <= east:
+                near.append(faces)
         if not near:
             return False
         corners = [(right * cos - up * sin + x, right * sin + up * cos + y) for right, up in self._corners]

@@ -13,7 +13,6 @@ from ai.environment import Ints
 NUM_ACTIONS: Final = 6
 NUM_FEATURES: Final = 9
 ACTION_NAMES: Final = ("coast", "left", "right", "main", "main + left", "main + right")
-FEATURE_NAMES: Final = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
 # A pad six metres wide spans about two units: near it, small differences must look large to a network.
 OBSERVATION_SCALE: Final = np.array([0.3, 0.3, 0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0])
 # Shares of thrust of every action, (6, 2): of the main engine, and of the jets along the craft's right.

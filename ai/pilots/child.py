@@ -81,11 +81,11 @@ def _listen(requests: BinaryIO, replies: BinaryIO, path: str, questions: SimpleQ
     os._exit(0)
 
 
-def read_block(stream: BinaryIO, most: int = LONGEST) -> bytes | None:
-    """Return the next block; None at the end, or before one of more than `most` bytes."""
+def read_block(stream: BinaryIO) -> bytes | None:
+    """Return the next block; None at the end, or before one of more than LONGEST bytes."""
     head = stream.read(4)
     length = int.from_bytes(head, "little")
-    if len(head) < 4 or length > most:
+    if len(head) < 4 or length > LONGEST:
         return None
     block = stream.read(length)
     return block if len(block) == length else None

@@ -62,10 +62,8 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
         raise ImportError(MISSING)
     if address is None:
         os.environ.update(_LOCAL | _QUIET | _TOKEN | worker_environment())
-        options: dict[str, Any] = {
-            "address": "local", "num_cpus": workers or cores(), "include_dashboard": False,
-            "_node_ip_address": LOOPBACK, "object_store_memory": _STORE,
-        }  # fmt: skip
+        options: dict[str, Any] = {"address": "local", "num_cpus": workers or cores(), "include_dashboard": False}
+        options |= {"_node_ip_address": LOOPBACK, "object_store_memory": _STORE}
     else:
         options = {"address": answering(address), "runtime_env": {"env_vars": worker_environment()}}
     import ray

@@ -15,8 +15,8 @@ from ray.exceptions import RayError, RayTaskError
 
 from ai.files import brief
 from ai.nn import ModelFormatError
-from ai.sweep.plan import Plan
-from ai.sweep.search import search_of
+from ai.sweep.plan import POPULATION, Plan
+from ai.sweep.search import Population, Proposals, Search
 from ai.sweep.study import Asked, Files, FinishedTrial, Study
 from ai.sweep.trial import Trial, check_ready, fingerprint
 
@@ -80,7 +80,7 @@ class Driver:
 
     def __init__(self, study: Study, workers: int, say: Callable[[str], None], report: Callable[[], None]) -> None:
         self._study, self._workers, self._say, self._report = study, workers, say, report
-        self.search = search_of(study)
+        self.search: Search = Population(study) if study.plan.search == POPULATION else Proposals(study)
         self.jobs: dict[Any, _Job] = {}
         self.lost: dict[int, str] = {}
         self.checkpoint = 20.0

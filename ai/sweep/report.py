@@ -11,6 +11,7 @@ from typing import Any, Final
 from ai.files import brief
 from ai.sweep.study import FinishedTrial, Study
 
+Curve = tuple[list[tuple[float, float]], FinishedTrial]  # points, across from 0 to 1, and a value each
 _BEST: Final = 10  # rows of the table
 _SHOWN: Final = 300  # curves and rows of the page; the JSON has all
 _LEFT: Final = 60  # of a plot's axis, in pixels
@@ -85,10 +86,11 @@ def page(study: Study) -> str:
     returns = study.metric.kind == "return" or any(point.success is None for point in points)
     reach, plots = max([1, *(point.at for point in points)]), []
     if ranked:
+        seeds = [(seed, trial) for trial in ranked for seed in trial.seeds]
         curves = [
             ([(each.at / reach, each.mean_return if returns else each.success or 0.0) for each in seed.curve], trial)
-            for trial in ranked for seed in trial.seeds
-        ]  # fmt: skip
+            for seed, trial in seeds
+        ]
         what = f"{'Mean return' if returns else 'Share that ended well'} without random actions, every seed"
         plots.append(_plot(what, ("0", f"{reach:,} {plan.unit}"), curves, best, "{:.3g}" if returns else "{:.0%}"))
     for name, dimension in plan.space.items() if ranked else ():
@@ -102,11 +104,8 @@ def page(study: Study) -> str:
     )
 
 
-def _plot(
-    caption: str, across: tuple[str, str], lines: Iterable[tuple[list[tuple[float, float]], FinishedTrial]],
-    best: FinishedTrial | None, shown: str,
-) -> str:  # fmt: skip
-    """Return a figure of lines of points (0 to 1, value), each of a trial, or of dots, where they have one point."""
+def _plot(caption: str, across: tuple[str, str], lines: Iterable[Curve], best: FinishedTrial | None, shown: str) -> str:
+    """Return a figure of lines of points, or of dots, where they have one point."""
     ordered = sorted(lines, key=lambda line: line[1] is best)  # above the others
     values = [value for line, _ in ordered for _, value in line]
     low, high = min(values, default=0.0), max(values, default=0.0)
@@ -119,8 +118,8 @@ def _plot(
             marks.append(f'<circle class="{colour}" cx="{places[0][0]}" cy="{places[0][1]}" r="4"/>')
         else:
             marks.append(f'<polyline class="{colour}" points="{" ".join(map(",".join, places))}"/>')
-    texts = [(_LEFT, 206, "start", across[0]), (420, 206, "end", across[1]),
-             (_LEFT - 4, 190, "end", shown.format(low)), (_LEFT - 4, 12, "end", shown.format(high))]  # fmt: skip
+    texts = [(_LEFT, 206, "start", across[0]), (420, 206, "end", across[1])]
+    texts += [(_LEFT - 4, 190, "end", shown.format(low)), (_LEFT - 4, 12, "end", shown.format(high))]
     return (
         f'<figure><svg width="420" height="216"><path class="axis" d="M{_LEFT},0 V190 H420"/>'
         + "".join(f'<text x="{x}" y="{y}" text-anchor="{end}">{escape(text)}</text>' for x, y, end, text in texts)

@@ -1,29 +1,23 @@
 """What a study tries next: settings that Optuna proposes, or the members of a population.
 
-Comes with the extra `sweep`. Optuna keeps trials and settings in its journal, which its own tools read. Optuna trusts
-a journal, so we never read one: when a study goes on, a new one is begun, and Optuna gets the finished trials again, in
-their order and through the calls that it got them by at first. Each was checked when it was read: of a study that
-somebody else has made, nothing reaches Optuna but settings and values.
+Comes with the extra `sweep`. Optuna writes nothing: when a study goes on, it gets the finished trials again, in their
+order and through the calls that it got them by at first. Each was checked when it was read: of a study that somebody
+else has made, nothing reaches Optuna but settings and values.
 """
 
 from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import optuna
-from optuna.storages import JournalStorage
-from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import TrialState
 
-from ai.sweep.plan import POPULATION, RANDOM, Dimension, Space
+from ai.sweep.plan import RANDOM, Dimension, Space
 from ai.sweep.study import Asked, FinishedTrial, Study
 
-JOURNAL: Final = "journal.jsonl"
 LEAST: Final = 8  # trials below which nothing is said of importance
 _REDUCTION: Final = 3  # successive halving: one trial in three goes on at each rung
 _SHARE: Final = 4  # one member in four is replaced by a copy of one of the best quarter
@@ -31,28 +25,27 @@ _REDRAWN: Final = 0.25  # chance that a copied knob is drawn anew, as in the pap
 _FACTORS: Final = (0.8, 1.2)
 
 
-class Journal(BaseJournalBackend):
-    """A new journal in a file that this process alone writes; Optuna's own waits for the disk at each line."""
-
-    def __init__(self, path: Path) -> None:
-        self._lines: list[dict[str, Any]] = []
-        self._path = path
-        path.write_bytes(b"")
-
-    def read_logs(self, log_number_from: int) -> Iterator[dict[str, Any]]:
-        """Yield the lines from a number on."""
-        yield from self._lines[log_number_from:]
-
-    def append_logs(self, logs: list[dict[str, Any]]) -> None:
-        """Append lines; raises OSError."""
-        lines = [json.dumps(each) for each in logs]
-        with self._path.open("a", encoding="utf-8") as file:
-            file.write("\n".join(lines) + "\n")
-        self._lines += map(json.loads, lines)
-
-
 class Search:
-    """Optuna's study beside ours, as the driver asks it for trials; raises OSError, as for a full disk."""
+    """What the driver asks for trials, and to which it tells how they go."""
+
+    def next(self) -> Asked | None:
+        """Return the next trial, one that was interrupted or a new one; None for no more, or for none yet."""
+        raise NotImplementedError
+
+    def falls_behind(self, trial: FinishedTrial) -> bool:  # noqa: ARG002
+        """Note how good a trial is so far; return whether others are so much better that it should end."""
+        return False
+
+    def tell(self, trial: FinishedTrial) -> None:
+        """Note the end of a trial."""
+
+    def importance(self) -> dict[str, float]:
+        """Return the share that each knob has in setting the best trials apart, the most important first."""
+        return {}
+
+
+class Proposals(Search):
+    """Optuna's study beside ours."""
 
     def __init__(self, study: Study) -> None:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
@@ -61,13 +54,10 @@ class Search:
         # Another seed each time, or a study that goes on would propose once more what it began with.
         seed = plan.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
         tpe = optuna.samplers.TPESampler
+        random = plan.search == RANDOM
         self._study = study
         self._optuna = optuna.create_study(
-            storage=JournalStorage(Journal(study.folder / JOURNAL)),
-            study_name=study.folder.name,
-            sampler=optuna.samplers.RandomSampler(seed)
-            if plan.search == RANDOM
-            else tpe(seed=seed, constant_liar=True),
+            sampler=optuna.samplers.RandomSampler(seed) if random else tpe(seed=seed, constant_liar=True),
             pruner=optuna.pruners.SuccessiveHalvingPruner(min_resource=1, reduction_factor=_REDUCTION),
             direction="minimize" if study.metric.sign == 1 else "maximize",
         )
@@ -85,15 +75,13 @@ class Search:
         """Begin a trial, with these settings or such as Optuna proposes."""
         space = self._study.plan.space
         if params is not None:
-            self._optuna.enqueue_trial({
-                name: json.dumps(value) if space[name].choices else value for name, value in params.items()
-            })  # fmt: skip
+            given = {name: json.dumps(each) if space[name].choices else each for name, each in params.items()}
+            self._optuna.enqueue_trial(given)
         trial = self._trials[number] = self._optuna.ask(self._distributions)
         drawn = {name: json.loads(each) if space[name].choices else each for name, each in trial.params.items()}
         return Asked(number, drawn)
 
     def next(self) -> Asked | None:
-        """Return the next trial, one that was interrupted or a new one; None for no more."""
         study = self._study
         if len(study.trials) + len(self._trials) >= study.plan.trials:
             return None
@@ -104,7 +92,6 @@ class Search:
         return self._ask(1 + max(known, default=-1))
 
     def falls_behind(self, trial: FinishedTrial) -> bool:
-        """Note how good a trial is so far; return whether others are so much better that it should end."""
         if not self._study.plan.stop_early or trial.value is None:
             return False
         noted = self._trials[trial.number]
@@ -112,15 +99,11 @@ class Search:
         return bool(noted.should_prune())
 
     def tell(self, trial: FinishedTrial) -> None:
-        """Note the end of a trial."""
         state = TrialState.FAIL if trial.value is None else TrialState.COMPLETE
         self._optuna.tell(self._trials.pop(trial.number), trial.value, state=state)
 
     def importance(self) -> dict[str, float]:
-        """Return the share that each knob has in setting the best trials apart, the most important first.
-
-        PED-ANOVA (Watanabe, Bansal and Hutter 2023). Empty for too few trials, and for equal values.
-        """
+        """Return the shares of PED-ANOVA (Watanabe, Bansal and Hutter 2023); none for few trials, or equal values."""
         known = [trial.value for trial in self._study.trials.values() if trial.value is not None]
         if len(known) < LEAST or len(set(known)) < 2:
             return {}
@@ -130,7 +113,7 @@ class Search:
 
 
 class Population(Search):
-    """Population-based training (Jaderberg et al. 2017), in generations, in place of a `Search`.
+    """Population-based training (Jaderberg et al. 2017), in generations.
 
     Every member of a generation trains for the same number of decisions. Then the worst quarter goes on with copies of
     runs of the best quarter, and with their knobs, changed a little; the others go on with their own.
@@ -146,23 +129,10 @@ class Population(Search):
         self._left = [number for number in range(study.plan.trials) if number not in known]
 
     def next(self) -> Asked | None:
-        """Return the next trial; None for no more, or as long as the generation before it is not whole."""
         asked = proposed(self._study, self._left[0]) if self._left else None
         if asked is not None:
             self._left.pop(0)
         return asked
-
-    def tell(self, trial: FinishedTrial) -> None:
-        """Pass over the end of a trial: the study has it."""
-
-    def importance(self) -> dict[str, float]:
-        """Return nothing: knobs change on the way."""
-        return {}
-
-
-def search_of(study: Study) -> Search:
-    """Return what says which trials a study has left."""
-    return Population(study) if study.plan.search == POPULATION else Search(study)
 
 
 def proposed(study: Study, number: int) -> Asked | None:

@@ -19,10 +19,10 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
 from ai.copilot.measurement import AssistedFlights, Help
-from ai.environment import Doubles
+from ai.environment import Doubles, finished
 from ai.lander.environment import LanderEnv
 from ai.training.config import Config
-from ai.training.tasks import finished, flown
+from ai.training.tasks import flown
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
 PILOTS: Final = 32  # of a part of a table: the more fly at once, the less time each takes

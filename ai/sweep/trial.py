@@ -104,16 +104,16 @@ class Trial:
 
     def result(self, figures: dict[int, dict[str, Any]] | None = None) -> FinishedTrial:
         """Return what the trial has come to; `figures` are those of the networks kept, by seed."""
-        seeds = tuple(
-            SeedResult(seed, tuple(curve), self.metric.of(curve, self.plan.budget, bool(problem)), problem,
-                       round(run.seconds, 3), (figures or {}).get(seed, {}))
-            for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True)
-        )  # fmt: skip
+        seeds = []
+        for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True):
+            value, kept = self.metric.of(curve, self.plan.budget, bool(problem)), (figures or {}).get(seed, {})
+            seeds.append(SeedResult(seed, tuple(curve), value, problem, round(run.seconds, 3), kept))
         value, seconds = median([seed.value for seed in seeds]), round(time.monotonic() - self._began, 3)
+        number, params, parent = self.asked.number, self.asked.params, self.asked.parent
+        stopped = self.at < self.end
         return FinishedTrial(
-            self.asked.number, self.asked.params, value, self.at, self.at < self.end, seconds, seeds,
-            self.asked.parent, restarts=self._restarts,
-        )  # fmt: skip
+            number, params, value, self.at, stopped, seconds, tuple(seeds), parent, restarts=self._restarts
+        )
 
     def checkpoint(self) -> Files:
         """Return the files of every seed's run as it is now, to go on with; none if one has diverged."""

@@ -18,6 +18,7 @@ ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly 
 FALLEN: Final = 0.3  # share of flights fewer than before a change, from which that is to blame
 COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
 RATES: Final = ("learning_rate", "final_learning_rate")
+_PART: Final = 0.3  # of a run, the last: by it is judged whether a curve rises
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
 # Rates above which no step is sensible, by the optimizer. Modern still learns at 0.03, not at 0.1; classic's values
 # have diverged at 0.1.
@@ -47,29 +48,30 @@ class RecentCurves:
         values = _finite(self.history[name])
         return float(values[-1]) if len(values) else float("nan")
 
-    def before(self, name: str, share: float = 0.3) -> float:
-        """Return the mean of a column in the first half of the last share of the run."""
-        first, middle = self._halves(share)
+    def before(self, name: str) -> float:
+        """Return the mean of a column in the first half of the last part of the run."""
+        first, middle = self._last_part
         return mean(self.history[name][first:middle])
 
-    def highest(self, name: str, share: float = 0.3, points: int = 8) -> float:
-        """Return the highest mean of so many points of a column in the last share of the run."""
-        values = _finite(self.history[name][self._halves(share)[0] :])
-        windows = np.lib.stride_tricks.sliding_window_view(values, min(points, len(values)))
+    def highest(self, name: str) -> float:
+        """Return the highest mean of eight points of a column in the last part of the run."""
+        values = _finite(self.history[name][self._last_part[0] :])
+        windows = np.lib.stride_tricks.sliding_window_view(values, min(8, len(values)))
         return float(windows.mean(axis=1).max())
 
     def is_late(self) -> bool:
         """Whether a run should be landing by now."""
         return self.last("decisions", 1) >= ENOUGH or self.last("episodes", 1) >= _FLIGHTS
 
-    def gained(self, name: str, share: float = 0.3) -> float:
-        """Return how much a column rose from the first to the second half of the last share of the run."""
-        return mean(self.history[name][self._halves(share)[1] :]) - self.before(name, share)
+    def gained(self, name: str) -> float:
+        """Return how much a column rose from the first to the second half of the last part of the run."""
+        return mean(self.history[name][self._last_part[1] :]) - self.before(name)
 
-    def _halves(self, share: float) -> tuple[int, int]:
-        """Return where the last share of the run begins, and its second half."""
+    @property
+    def _last_part(self) -> tuple[int, int]:
+        """Rows at which the last part of the run begins, and its second half."""
         decisions = self.history["decisions"]
-        first, middle = np.searchsorted(decisions, decisions[-1] * np.array([1.0 - share, 1.0 - share / 2]))
+        first, middle = np.searchsorted(decisions, decisions[-1] * np.array([1.0 - _PART, 1.0 - _PART / 2]))
         return int(first), int(middle)
 
     def by_hundreds(self) -> Doubles:

@@ -30,9 +30,8 @@ from ai.files import (
     sound_fields,
     write_text,
 )
-from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
+from ai.lander.environment import NUM_ACTIONS, LanderEnv
 from ai.lander.ground import hilly
-from ai.lander.pilots import Pilot
 from ai.lander.spawns import SPAWNS
 from ai.training.config import Config
 
@@ -84,28 +83,6 @@ def takeover(hands: Sequence[bool]) -> int:
     return begins
 
 
-def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") -> list[Demonstration]:
-    """Let a pilot fly until it has landed `count` times, each flight from a seed of its own, and return those.
-
-    Raises ValueError for a pilot that crashes more than nine times out of ten.
-    """
-    found: list[Demonstration] = []
-    seeds = range(seed, seed + 10 * count)
-    env = LanderEnv(len(seeds), 0, spawn, frame_skip=4)
-    for slot, own in enumerate(seeds):
-        env.streams[slot] = _stream(own)
-    observation, flown = env.reset(), []
-    while (env.outcome == Outcome.FLYING).any():
-        flown.append(pilot.act(observation, held=env.actions))
-        observation = env.step(flown[-1]).observation
-    for slot in np.flatnonzero(env.outcome == Outcome.LANDED)[:count].tolist():
-        actions = np.repeat([row[slot] for row in flown], env.frame_skip)[: env.steps[slot]]
-        found.append(Demonstration(seeds[slot], tuple(actions.tolist()), spawn))
-    if len(found) < count:
-        raise ValueError(f"of {len(seeds)} flights, only {len(found)} landed, not {count}")
-    return found
-
-
 def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
     """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if it cannot be written."""
     kept = [asdict(demonstration) for demonstration in demonstrations[-MOST:]]
@@ -138,7 +115,7 @@ def relive(demonstration: Demonstration, config: Config) -> Transition | None:
     if demonstration.ground is not None:
         hills = hilly(np.random.default_rng(demonstration.ground))
     env = LanderEnv(1, 0, demonstration.spawn, frame_skip=1, ground=hills, weights=config.reward_weights)
-    env.streams[0] = _stream(demonstration.seed)
+    env.streams[0] = stream(demonstration.seed)
     env.target[:] = min(demonstration.pad, len(env.ground.pads) - 1)
     observation, steps, found = env.reset(), NStep(config.n_step, config.discount), list[Transition]()
     for first in range(0, len(actions), skip):
@@ -170,6 +147,6 @@ def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
     return len(landings)
 
 
-def _stream(seed: int) -> np.random.Generator:
+def stream(seed: int) -> np.random.Generator:
     """Return the random stream from which a lander that flies alone from this seed draws its start."""
     return np.random.default_rng(seed).spawn(1)[0]

@@ -60,8 +60,8 @@ class DigitSession(Session[DigitTraining]):
             self._point_at = training.seconds + POINT_SECONDS
             loss, accuracy = np.mean(self._batches, axis=0).tolist()
             self._batches.clear()
-            self.record(DigitPoint(training.seconds, progress.step, progress.epoch, loss, accuracy,
-                                   progress.learning_rate, progress.images_per_second))  # fmt: skip
+            step, epoch, rate, pace = progress.step, progress.epoch, progress.learning_rate, progress.images_per_second
+            self.record(DigitPoint(training.seconds, step, epoch, loss, accuracy, rate, pace))
         self.show()
         if self._looking <= _SHARE * (training.seconds - self._began) and len(training.held_images):
             began = training.clock()

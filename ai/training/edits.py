@@ -1,4 +1,4 @@
-"""Edits of a network by hand, while it flies: weights that are set, units that are silenced, and the way back.
+"""Edits of a network by hand, while it flies: links that are cut, units that are silenced, and the way back.
 
 Layer 0 leads from the inputs to the first hidden units, as in `ai.explain.inspection.links`.
 """
@@ -14,7 +14,6 @@ from ai.environment import Floats
 from ai.nn import DuelingLayer, FullyConnectedLayer, NeuralNetwork
 
 EDITED: Final = "network"  # the name of the setting change that an edit is
-MOST_WEIGHT: Final = 100.0  # largest size of a weight that is set by hand
 
 Parameters = tuple[Floats, Floats]  # of the online and the target network
 Place = tuple[int, int, int | None]
@@ -22,15 +21,14 @@ Place = tuple[int, int, int | None]
 
 @dataclass(frozen=True)
 class Edit:
-    """Edit that sets the weight from unit `start` to unit `end` of a layer, or all weights that lead from `start`.
+    """Edit that sets a weight of a layer to 0, from unit `start` to unit `end`; without `end`, all that lead from it.
 
-    0 cuts a link; without `end`, it silences the unit.
+    The first cuts a link, the second silences a unit.
     """
 
     layer: int
     start: int
     end: int | None = None
-    value: float = 0.0
 
     @property
     def place(self) -> Place:
@@ -50,8 +48,6 @@ class Edit:
             raise ValueError("in a dueling layer no single weight leads to one action; silence a unit before it")
         if not (0 <= self.start < starts and 0 <= (self.end or 0) < ends):
             raise ValueError(f"there is no weight {self.start}, {self.end} of {starts} x {ends}")
-        if not abs(self.value) <= MOST_WEIGHT:  # nor is NaN
-            raise ValueError(f"a weight is at most {MOST_WEIGHT:g} in size, not {self.value:g}")
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,7 @@ class NetworkEdits:
 
     newest_only: ClassVar = True
 
-    places: tuple[Place, ...] = ()  # layer, start and end of each weight that was set; no end: of a silenced unit
+    places: tuple[Place, ...] = ()  # layer, start and end of each link that was cut; no end: of a silenced unit
     steps: int = 0  # that can be undone one by one
     holds: bool = False  # whether learning is held still
     way_back: bool = False  # whether all parameters from before the first edit can be restored
@@ -72,7 +68,7 @@ class NetworkEdits:
 
     @property
     def weights(self) -> list[tuple[int, int, int]]:
-        """Layer, start and end of each weight that was set."""
+        """Layer, start and end of each link that was cut."""
         return [(layer, start, end) for layer, start, end in self.places if end is not None]
 
 
@@ -99,22 +95,16 @@ class NetworkEditor:
         """Number of units and weights that were edited, also those from which it has learnt on."""
         return self._learnt_on + len(self.edits.places)
 
-    def apply(self, edit: Edit, *, amends: bool = False) -> None:
-        """Carry out an edit in both networks, and hold learning.
-
-        With `amends`, it takes the place of the step before if that set the same weight, as while it is dragged. Raises
-        ValueError, with nothing changed, for an edit that cannot be made.
-        """
+    def apply(self, edit: Edit) -> None:
+        """Carry out an edit in both networks, and hold learning; raises ValueError for one that cannot be made."""
         agent = self._agent
         edit.check(agent.online)
         values = agent.online.values.copy(), agent.target.values.copy()
-        if amends and self._steps and self._steps[-1][0].place == edit.place:
-            values = self._steps.pop()[1]
         self._before = self._before or values
         self._steps.append((edit, values))
         for network in (agent.online, agent.target):
             network.values  # noqa: B018 - packs the parameters, so that the weights are views of them
-            _layers(network)[edit.layer].weights[edit.start, slice(None) if edit.end is None else edit.end] = edit.value
+            _layers(network)[edit.layer].weights[edit.start, slice(None) if edit.end is None else edit.end] = 0.0
         agent.paused = True
 
     def learn_on(self) -> None:

@@ -7,7 +7,7 @@ made from these only when one is asked for, by a copy of the agent.
 from __future__ import annotations
 
 from collections import deque
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -78,10 +78,10 @@ class Explanations:
         if not self._training.agent.ready or not self._decided:
             raise ValueError("the network has not begun to learn: its replay buffer holds too few transitions")
         kept = self._moments if decisions is not None else []
-        moment = min(kept, key=lambda each: abs(each.before.decisions - (decisions or 0)), default=None)
+        moment = min(kept, key=lambda each: abs(each.before.agent.decisions - (decisions or 0)), default=None)
         moment = moment or self._now()
         cell, flown = _memory(moment, slot)
-        return explain(moment.before, cell, self._training.agent, flown)
+        return explain(moment.before, cell, flown)
 
     def _now(self) -> _Moment:
         agent = self._training.agent
@@ -92,7 +92,7 @@ class Explanations:
 
 def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     """Return a lander's latest memory that is complete, or of a flight's end the one that sums up most."""
-    config, decided = moment.before.config, list(moment.decided)
+    config, decided = moment.before.agent.config, list(moment.decided)
     ends = [place for place, each in enumerate(decided) if each.result.ended[slot]]
     last = ends[-1] if ends else len(decided) - 1
     first = 1 + max((place for place in ends if place < last), default=-1)
@@ -100,11 +100,11 @@ def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     mine, n_step = slice(slot, slot + 1), NStep(len(decided), config.discount)
     for each in decided:
         result = each.result
-        reward = result.reward[mine] * np.float32(config.reward_scale)
+        reward = result.reward * np.float32(config.reward_scale)
+        came: Any = each.observation, each.actions, reward, result.observation, result.terminated, result.ended
         # Only what the last decision sums up is shown.
         with Recorder([NStep.add] if each is decided[-1] else ()) as recorder:
-            cells, _ = n_step.add(each.observation[mine], each.actions[mine], reward, result.observation[mine],
-                                  result.terminated[mine], result.ended[mine])  # fmt: skip
+            cells, _ = n_step.add(*(part[mine] for part in came))
     results = [each.result for each in decided]
     flown = Flown(
         slot,
@@ -121,7 +121,7 @@ def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
 
 def _size(moment: _Moment) -> int:
     """Return the number of bytes of a moment, about."""
-    before, decided = moment.before, moment.decided[0]
-    networks = (2 + len(before.optimizer)) * before.online.nbytes
+    agent, decided = moment.before.agent, moment.decided[0]
+    networks = (4 + len(agent.optimizer.memory)) * agent.online.values.nbytes  # both with room for gradients
     parts = sum(part.nbytes for part in decided.result.components.values())
     return int(networks + len(moment.decided) * (2 * decided.observation.nbytes + parts))

@@ -102,12 +102,10 @@ class GymEnv:
     def state(self) -> State:
         """Return what each episode began from and its actions, and what came of them."""
         count = max(map(len, self._actions))
-        actions = [taken + [-1] * (count - len(taken)) for taken in self._actions]
-        return {
-            "landings": self.landings, "begun": self._begun.copy(),
-            "actions": np.array(actions, np.intp).reshape(self.num_envs, count),
-            "observation": self._observation.copy(), "returns": self.returns.copy(), "outcome": self.outcome.copy(),
-        }  # fmt: skip
+        actions = np.array([taken + [-1] * (count - len(taken)) for taken in self._actions], np.intp)
+        begun = {"begun": self._begun.copy(), "actions": actions.reshape(self.num_envs, count)}
+        came = {"landings": self.landings, "returns": self.returns.copy(), "outcome": self.outcome.copy()}
+        return begun | came | {"observation": self._observation.copy()}
 
     def restore(self, state: State) -> bool:
         """Begin the episodes of a state again, and take its actions again; return whether that led to the same moment.

@@ -279,16 +279,14 @@ class History:
 
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if it cannot be written."""
-        described = {
-            "version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale,
-            "stride": self._stride, "told": self._appended,
-            "alterations": [asdict(change) for change in self.setting_changes],
-            "validations": [asdict(validation) for validation in self.validations],
-            "checkpoints": [
-                asdict(_CheckpointFile(each.seconds, each.decisions, each.success, each.normalizer))
-                for each in self.checkpoints
-            ],
-        }  # fmt: skip
+        described = {"version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale}
+        described |= {"stride": self._stride, "told": self._appended}
+        described["alterations"] = [asdict(change) for change in self.setting_changes]
+        described["validations"] = [asdict(validation) for validation in self.validations]
+        described["checkpoints"] = [
+            {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.normalizer}
+            for each in self.checkpoints
+        ]
         values = np.array([each.values for each in self.checkpoints] or np.empty((0, 0)), dtype=np.float32)
         text = np.array(json.dumps(described))
         np.savez(folder / HISTORY_FILE, allow_pickle=False, described=text, points=self.points, values=values)
@@ -334,12 +332,12 @@ class History:
 def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     """Raise ValueError for an array that no history has."""
     rows, columns = shape if len(shape) == 2 else (-1, -1)
+    few = 0 <= rows <= MOST_CHECKPOINTS and columns >= 0 and rows * columns <= _MOST_VALUES
     fits = {
         "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
         "points": 0 <= rows <= CAPACITY and 0 <= columns <= _MOST_COLUMNS and dtype == np.float64,
-        "values": 0 <= rows <= MOST_CHECKPOINTS and columns >= 0 and rows * columns <= _MOST_VALUES
-        and dtype == np.float32,
-    }  # fmt: skip
+        "values": few and dtype == np.float32,
+    }
     if not fits.get(name):
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
 

@@ -89,10 +89,8 @@ class LanderSession(Session[Training]):
         return self.training.agent.paused
 
     def state(self) -> State:
-        return {
-            "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
-            "learned_from": sorted(self._learned_from), "paid_by": self.paid_by,
-        }  # fmt: skip
+        due = {"point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning}
+        return due | {"learned_from": sorted(self._learned_from), "paid_by": self.paid_by}
 
     def load_state(self, state: State) -> None:
         self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
@@ -101,12 +99,10 @@ class LanderSession(Session[Training]):
 
     def show(self) -> None:
         agent, training = self.training.agent, self.training
-        self.messages += (
-            self._swarm_state,
-            NetworkState(agent.online.values.copy(), agent.online.gradients.copy(),
-                         training.observation[CAREFUL].copy(), agent.decisions),
-            in_force(training.config, agent.decisions, training.episodes),
-        )  # fmt: skip
+        values, gradients, sensed = agent.online.values, agent.online.gradients, training.observation[CAREFUL]
+        network = NetworkState(values.copy(), gradients.copy(), sensed.copy(), agent.decisions)
+        now = in_force(training.config, agent.decisions, training.episodes)
+        self.messages += (self._swarm_state, network, now)
 
     def tell(self, progress: Progress) -> None:
         now = self.training.clock()
@@ -149,10 +145,11 @@ class LanderSession(Session[Training]):
 
     def _swarm_state_now(self) -> SwarmState:
         env, training = self.env, self.training
-        return SwarmState(
-            env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
-            env.outcome.astype(np.int8), training.statistics.earned.astype(np.float32), training.agent.decisions,
-        )  # fmt: skip
+        position, angle, earned = (
+            each.astype(np.float32) for each in (env.position, env.angle, training.statistics.earned)
+        )
+        actions, outcome = env.actions.astype(np.int8), env.outcome.astype(np.int8)
+        return SwarmState(position, angle, actions, outcome, earned, training.agent.decisions)
 
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
@@ -198,9 +195,9 @@ class LanderSession(Session[Training]):
         """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
         self.messages.append(self._explanations.explain(slot, decisions))
 
-    def _edit(self, edit: Edit, amends: bool = False) -> None:
-        """Edit the network; `amends` says that the weight of the last edit is still being dragged."""
-        self._edited(lambda editor: editor.apply(edit, amends=amends))
+    def _edit(self, edit: Edit) -> None:
+        """Edit the network."""
+        self._edited(lambda editor: editor.apply(edit))
 
     def _undo(self, every: bool = False) -> None:
         """Undo the last edit, or every one since the network was as it had learnt."""
@@ -229,7 +226,5 @@ class LanderSession(Session[Training]):
         self.messages.append(self._editor.edits)
         self.show()
 
-    commands = Session.commands | {
-        "save": save, "restore": _restore, "teach": _teach, "explain": _explain, "edit": _edit, "undo": _undo,
-        "learn_on": _learn_on,
-    }  # fmt: skip
+    commands = Session.commands | {"save": save, "restore": _restore, "teach": _teach, "explain": _explain}
+    commands |= {"edit": _edit, "undo": _undo, "learn_on": _learn_on}

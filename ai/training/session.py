@@ -24,6 +24,7 @@ from ai.training.state import State, going_on
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
 R = TypeVar("R", bound=Run)
+Commands = dict[str, Callable[..., None]]
 Turns = Generator[tuple[Any, ...], Command | None, None]
 
 
@@ -197,6 +198,4 @@ class Session(ABC, Generic[R]):
     def _finish(self) -> None:
         """Take no more steps: keep the run, measure it, and end."""
 
-    commands: ClassVar[dict[str, Callable[..., None]]] = {
-        "change": change, "save": save, "autosave_to": _autosave_to, "finish": _finish,
-    }  # fmt: skip
+    commands: ClassVar[Commands] = {"change": change, "save": save, "autosave_to": _autosave_to, "finish": _finish}

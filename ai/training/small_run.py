@@ -176,10 +176,9 @@ class SmallRun:
         count, oldest = min(self.config.num_envs, len(replay)), replay.added - len(replay)
         drawn = oldest + (replay.drawn - replay.start) % replay.capacity
         memory = Memory(replay.at(_newest(replay, count)), replay.added - count, oldest, drawn)
-        return SmallState(
-            self._decisions, learners.flights, learners.landed, float(values.mean()), epsilon, learners.flown, memory,
-            tests.flown if tests else None, tests.landed if tests else None,
-        )  # fmt: skip
+        tested, passed = (tests.flown, tests.landed) if tests else (None, None)
+        done, value = (self._decisions, learners.flights, learners.landed), float(values.mean())
+        return SmallState(*done, value, epsilon, learners.flown, memory, tested, passed)
 
 
 def _newest(replay: ReplayBuffer, count: int) -> Ints:

@@ -99,11 +99,9 @@ class StateWriter:
             if (name, number) not in self._written:
                 self._written[name, number] = file = f"{name}-{self._token}-{number}.npy"
                 blocks[file] = _records(buffer, number * BLOCK, (number + 1) * BLOCK)
-        state: State = {
-            "start": buffer.start, "size": len(buffer), "added": buffer.added, "kept": kept,
-            "blocks": [self._written[name, number] for number in numbers],
-            "rest": _records(buffer, max(oldest, whole * BLOCK), buffer.added),
-        }  # fmt: skip
+        state: State = {"start": buffer.start, "size": len(buffer), "added": buffer.added, "kept": kept}
+        state["blocks"] = [self._written[name, number] for number in numbers]
+        state["rest"] = _records(buffer, max(oldest, whole * BLOCK), buffer.added)
         if isinstance(buffer, PrioritisedReplayBuffer):
             rows = (buffer.start + np.arange(len(buffer) - kept, len(buffer))) % buffer.capacity
             state |= {"largest": buffer.largest, "priorities": buffer.priorities[rows]}
@@ -207,8 +205,8 @@ def _name(moment: int) -> str:
 def _packed(buffer: ReplayBuffer) -> np.dtype[Any]:
     """Return the type of a transition on disk: nothing between its fields, and small numbers in few bytes."""
     features = buffer.transitions.state.shape[1]
-    return np.dtype([("state", "<f4", features), ("next_state", "<f4", features), ("action", "<u2"),
-                     ("reward", "<f4"), ("terminal", "u1"), ("steps", "u1")])  # fmt: skip
+    numbers = [("action", "<u2"), ("reward", "<f4"), ("terminal", "u1"), ("steps", "u1")]
+    return np.dtype([("state", "<f4", features), ("next_state", "<f4", features), *numbers])
 
 
 def _records(buffer: ReplayBuffer, first: int, last: int) -> NDArray[np.uint8]:

@@ -65,10 +65,9 @@ class EpisodeStatistics:
     def state(self) -> dict[str, Any]:
         """Return copies of all of it, so that a run goes on in the middle of its episodes."""
         outcomes, returns, parts = zip(*self._recent, strict=True) if self._recent else ((), (), ())
-        return {
-            "recent": {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]},
-            "earned": self.earned.copy(), "paid": None if self._paid is None else self._paid.copy(),
-        }  # fmt: skip
+        recent = {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]}
+        paid = None if self._paid is None else self._paid.copy()
+        return {"recent": recent, "earned": self.earned.copy(), "paid": paid}
 
     def load_state(self, state: Mapping[str, Any]) -> None:
         """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""

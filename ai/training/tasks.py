@@ -13,7 +13,7 @@ from typing import Any, Final, Generic, Self, TypeVar
 import numpy as np
 
 from ai.agent.symmetry import Symmetry
-from ai.environment import Doubles, Env, Ints
+from ai.environment import Doubles, Env, Ints, T, finished
 from ai.files import MOST, array_like, read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
@@ -42,7 +42,6 @@ _CONTACTS: Final[dict[str, tuple[Any, ...]]] = {
 }  # fmt: skip
 
 S = TypeVar("S", bound="Score")
-T = TypeVar("T")
 Trial = Generator[None, None, T]  # takes one decision a turn, and returns what came of them
 
 
@@ -138,10 +137,9 @@ class Evaluation(Score):
         counts, (returns, landing_seconds, landing_fuel, switches, seconds) = sums[: len(Outcome)], sums[-5:].tolist()
         episodes, landed = int(counts.sum()), int(counts[Outcome.LANDED])
         success, crash, out_of_bounds, time_out = (counts[Outcome.LANDED :] / episodes).tolist()
-        return cls(
-            episodes, success, crash, out_of_bounds, time_out, returns / episodes,
-            landing_seconds / landed if landed else None, landing_fuel / landed if landed else None, switches / seconds,
-        )  # fmt: skip
+        took, burnt = (each / landed if landed else None for each in (landing_seconds, landing_fuel))
+        shares = success, crash, out_of_bounds, time_out
+        return cls(episodes, *shares, returns / episodes, took, burnt, switches / seconds)
 
     def better_than(self, other: Evaluation | None) -> bool:
         """Whether more flights landed, random and hard starts together, or as many and the mean return is higher.
@@ -161,15 +159,6 @@ class Evaluation(Score):
     def __str__(self) -> str:
         took = "" if self.mean_time is None else f", in {self.mean_time:.1f} s on average"
         return f"{self.figure} of {self.episodes} validation flights landed{took}"
-
-
-def finished(trial: Trial[T]) -> T:
-    """Take a trial to its end, and return what came of it."""
-    while True:
-        try:
-            next(trial)
-        except StopIteration as done:
-            return done.value  # type: ignore[no-any-return]
 
 
 def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[Doubles]:
@@ -197,9 +186,9 @@ def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[
     return np.array([*counts, *sums], dtype=float)
 
 
-def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random") -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
-    env = LanderEnv(episodes, seed, spawn, frame_skip)
+    env = LanderEnv(episodes, seed, spawn)
     env.reset()
     return Evaluation.of(finished(flown(pilot, env)))
 

@@ -108,7 +108,8 @@ class Sound:
         """Mute while the window has no focus; follow devices that are plugged in or removed."""
         match event.type:
             case pygame.WINDOWFOCUSLOST | pygame.WINDOWMINIMIZED:
-                self._mute()
+                self._muted = True
+                self._fade_out()
             case pygame.WINDOWFOCUSGAINED | pygame.AUDIODEVICEADDED:
                 self._muted = self._muted and event.type == pygame.AUDIODEVICEADDED
                 if self._wanted and not self.ready:
@@ -175,10 +176,6 @@ class Sound:
                 self._waves[key] = instrument.render(key)
             except Exception:
                 _log.exception("making the sound %s", key)
-
-    def _mute(self) -> None:
-        self._muted = True
-        self._fade_out()
 
     @_while_open
     def _fade_out(self) -> None:

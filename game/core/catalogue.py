@@ -45,6 +45,11 @@ class Plural(str):
         return self._choose(index(values["count"])).format(*args, **values)
 
 
+def capital(words: str) -> str:
+    """Begin with a capital letter; the others stay as they are, for German nouns have theirs."""
+    return words[:1].upper() + words[1:]
+
+
 def read(folder: Path) -> dict[str, Any]:
     """Return all texts by name: a string, a `Plural`, or a group of texts, as a tuple or by key.
 

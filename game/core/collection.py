@@ -14,16 +14,7 @@ from typing import Final, Generic, TypeVar
 
 import platformdirs
 
-from ai.files import (
-    atomic_folder,
-    brief,
-    free_path,
-    move_state,
-    recover_all,
-    recover_folder,
-    remove_state,
-    take_folder,
-)
+from ai.files import atomic_folder, brief, free_path, move_state, recover_all, recover_folder, remove_state, take_folder
 from game.core import texts
 from game.core.names import (
     LONGEST_NAME,

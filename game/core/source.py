@@ -39,12 +39,12 @@ class Source:
 
         Of several calls, `number` chooses one. Raises LookupError if there is none.
         """
+        nodes = list(ast.walk(self._tree))
         if callable(mark):
-            found = sorted(node.lineno for node in ast.walk(self._tree)
-                           if isinstance(node, ast.Call) and _name(node.func) == mark.__name__)  # fmt: skip
+            calls = [node for node in nodes if isinstance(node, ast.Call) and _name(node.func) == mark.__name__]
+            found = sorted(node.lineno for node in calls)
         else:
-            named = [node for node in ast.walk(self._tree)
-                     if isinstance(node, ast.Name | ast.Attribute) and _name(node) == mark]  # fmt: skip
+            named = [node for node in nodes if isinstance(node, ast.Name | ast.Attribute) and _name(node) == mark]
             sets = sorted((node.lineno for node in named if isinstance(node.ctx, ast.Store)), reverse=True)
             found = sets or sorted(node.lineno for node in named)
         line = next(islice(found, number, None), None)

@@ -1,4 +1,4 @@
-"""Handwritten digits, as several screens show them: pictures, what a run has learned, networks kept in memory."""
+"""Handwritten digits, as several screens show them: pictures, cells to pick, networks kept in memory."""
 
 
 def certainty(value: float) -> str:

@@ -17,7 +17,7 @@ from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import HUMAN, INK, LINE
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.hints import Hint
-from game.ui.widget import PointsManager, RowWidget
+from game.ui.widget import RowWidget
 
 _WAYS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
 _AFTER, _EVERY = 18, 4  # updates that an arrow is held before the cell moves on, and between two moves
@@ -32,7 +32,6 @@ class CellPicker(RowWidget):
     long as one is held, until Enter or Escape lets go; until then they move the focus past the picture.
 
     Args:
-        manager: the form's manager.
         choose: gets the row and the column of a newly chosen cell.
         most: height of the picture, in points, at most.
         shades: colours of values from -1 to 1.
@@ -51,12 +50,11 @@ class CellPicker(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         choose: Callable[[int, int], None],
         most: float,
         shades: npt.NDArray[np.uint8] = SIGNED,
     ) -> None:
-        super().__init__(manager, _NOWHERE, "")
+        super().__init__(_NOWHERE, "")
         self._on_choose, self._most, self._shades = choose, most, shades
         self.tiles: Numbers = np.zeros((1, 1, 1), np.float32)
         self.rows = self.columns = self.count = self.stride = 1

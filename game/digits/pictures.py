@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,11 @@ AMBER: Final = _shades(MUTE, HUMAN)
 def picture(values: Numbers, size: tuple[int, int], shades: npt.NDArray[np.uint8] = GREY) -> pygame.Surface:
     """Return a picture of numbers (height, width) in -1 to 1, every number a sharp rectangle; `size` in pixels."""
     return mosaic(values[None], 1, size, 0, shades)
+
+
+def visible(values: npt.NDArray[np.floating[Any]]) -> Numbers:
+    """Return signed square roots of values in -1 to 1, so that small ones are seen too."""
+    return np.asarray(np.sign(values) * np.sqrt(np.abs(values)), np.float32)
 
 
 def framed(values: Numbers, shades: npt.NDArray[np.uint8] = GREY) -> Callable[[Canvas], None]:

@@ -24,7 +24,7 @@ _FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
 _AROUND: Final = 4.0  # points of margin around noted text
 
 Align = Literal["left", "centre", "right"]
-_SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
+SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
 PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # in points
 
 Point = tuple[float, float]
@@ -84,7 +84,7 @@ class Canvas:
         width, height = window.get_size()
         scale = max(min(width / VIEW_SIZE[0], height / VIEW_SIZE[1]), 0.01)
         self.size = (max(1, round(VIEW_SIZE[0] * scale)), max(1, round(VIEW_SIZE[1] * scale)))
-        if scale != self.scale:
+        if self.scale and scale != self.scale:  # a window of another size: what was kept for the last one is in the way
             typeface.forget()
             shapes.forget()
         self.scale = scale
@@ -155,18 +155,13 @@ class Canvas:
         """Return the point at a place on the surface, in pixels."""
         return (place[0] - self.origin[0]) / self.scale, (place[1] - self.origin[1]) / self.scale
 
-    def sheet(self, width: float, height: float, spare: pygame.Surface | None = None) -> Canvas:
+    def sheet(self, width: float, height: float) -> Canvas:
         """Return a canvas of that size on its own transparent surface, to be drawn once and copied often.
 
-        Glows and translucent lines need a background, and do not show on it. A `spare` surface of the same size is
-        used again: to clear it takes a tenth of the time of getting as much memory.
+        Glows and translucent lines need a background, and do not show on it.
         """
         size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
-        if spare is None or spare.get_size() != size:
-            spare = pygame.Surface(size, pygame.SRCALPHA)
-        else:
-            spare.fill((0, 0, 0, 0))
-        sheet = self._on(spare)
+        sheet = self._on(pygame.Surface(size, pygame.SRCALPHA))
         sheet.size = size
         return sheet
 
@@ -226,11 +221,6 @@ class Canvas:
         """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
         self.explained.append(Explanation(pygame.FRect(box).move(self.moved), what, now))
 
-    def in_window(self, rect: pygame.typing.RectLike) -> pygame.Rect:
-        """Convert a rectangle from points to the window's pixels."""
-        box = pygame.FRect(rect)
-        return self.rect(box.x, box.y, box.width, box.height)
-
     # Text
 
     def text(
@@ -258,7 +248,7 @@ class Canvas:
         parts, width, above, below = typeface.line(
             string, self.grown(size), weight, colour, tabular, scale, room, self.least(size)
         )
-        x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
+        x, y = left + position[0] * scale - SHIFT[align] * width, top + round(position[1] * scale)
         if alpha >= 1:
             self.surface.fblits([(surface, (round(x + across), y - baseline)) for surface, across, baseline in parts])
         else:
@@ -297,21 +287,17 @@ class Canvas:
         """Draw an anti-aliased line; vertical and horizontal ones are sharp."""
         thickness = max(1, self.px(width))
         start, end = self.pixels(a), self.pixels(b)
-        if a[0] == b[0] or a[1] == b[1]:
-            self._straight(start, end, colour, thickness, alpha)
+        left, top = round(min(start[0], end[0])), round(min(start[1], end[1]))
+        if a[1] == b[1]:
+            across = pygame.Rect(left, top - thickness // 2, round(abs(end[0] - start[0])), thickness)
+            self.fill(across, colour, alpha)
+        elif a[0] == b[0]:
+            down = pygame.Rect(left - thickness // 2, top, thickness, round(abs(end[1] - start[1])))
+            self.fill(down, colour, alpha)
         elif alpha >= 1:
             pygame.draw.aaline(self.surface, colour, start, end, thickness)
         else:
             self._blit(*shapes.slanted(start, end, colour, thickness), alpha)
-
-    def _straight(self, a: Point, b: Point, colour: Colour, thickness: int, alpha: float) -> None:
-        left, top = round(min(a[0], b[0])), round(min(a[1], b[1]))
-        length = round(max(abs(b[0] - a[0]), abs(b[1] - a[1])))
-        if a[1] == b[1]:
-            area = pygame.Rect(left, top - thickness // 2, length, thickness)
-        else:
-            area = pygame.Rect(left - thickness // 2, top, thickness, length)
-        self.fill(area, colour, alpha)
 
     def fill(self, area: pygame.Rect, colour: Colour, alpha: float = 1.0) -> None:
         """Fill an area given in pixels."""
@@ -366,12 +352,7 @@ class Canvas:
         self._blit(shapes.rounded(area.size, radius * self.scale, colour), area.topleft, alpha)
 
     def outline(
-        self,
-        rect: pygame.typing.RectLike,
-        radius: float,
-        colour: Colour,
-        width: float = 1.0,
-        alpha: float = 1.0,
+        self, rect: pygame.typing.RectLike, radius: float, colour: Colour, width: float = 1.0, alpha: float = 1.0
     ) -> None:
         """Draw the edge of a rectangle with round corners, inside it."""
         area = self._area(rect)
@@ -394,8 +375,8 @@ class Canvas:
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""
         if (pixels := self.px(radius)) >= shapes.HUGE_GLOW:
-            middle = round(centre[0] * self.scale) + self.origin[0], round(centre[1] * self.scale) + self.origin[1]
-            shapes.add_huge_glow(self.surface, middle, pixels, colour, min(strength, 4.0))
+            x, y = self.pixels(centre)
+            shapes.add_huge_glow(self.surface, (round(x), round(y)), pixels, colour, min(strength, 4.0))
         elif light := self.light(centre, radius, colour, strength):
             self.surface.blit(*light, None, pygame.BLEND_RGB_ADD)
 
@@ -406,13 +387,10 @@ class Canvas:
         if pixels <= 0 or level <= 0:
             return None
         surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
-        half, (left, top), scale = surface.width // 2, self.origin, self.scale
-        return surface, (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
+        (x, y), half = self.pixels(centre), surface.width // 2
+        return surface, (round(x) - half, round(y) - half)
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:
     """Return how far a page is moved to an edge of the view, or two, in points; see `Canvas.at`."""
-    return (
-        (0.0, view.right - VIEW_SIZE[0], view.left)[across],
-        (0.0, view.bottom - VIEW_SIZE[1], view.top)[down],
-    )
+    return ((0.0, view.right - VIEW_SIZE[0], view.left)[across], (0.0, view.bottom - VIEW_SIZE[1], view.top)[down])

@@ -7,13 +7,13 @@ on, so the same lines of code measure a panel, lay it out and draw it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Final
+from dataclasses import dataclass
+from typing import Any, Final
 
 import pygame
 
 from game.drawing import typeface
-from game.drawing.canvas import Align, Canvas
+from game.drawing.canvas import SHIFT, Align, Canvas
 from game.drawing.prose import lines
 from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, PALETTE, SMALL, STEP, TEXT, Colour, Palette
 from game.drawing.typeface import Weight
@@ -24,7 +24,6 @@ BASELINE: Final = 1.02
 _APART: Final = 32.0  # points between two columns
 _STACKED: Final = 12.0  # and between two that stand one below the other
 _BAR: Final = 3.0
-_MIDDLE: Final = 0.34  # of small letters above their baseline, in sizes of the type
 
 
 @dataclass
@@ -59,9 +58,20 @@ class Cursor:
         """The player's colours for within and beyond limits."""
         return self.canvas.palette if self.canvas else PALETTE
 
+    @property
+    def style(self) -> dict[str, Any]:
+        """Its style, as `Canvas.text` takes it."""
+        return {"size": self.size, "colour": self.colour, "weight": self.weight}
+
     def in_style(self, size: float | None = None, colour: Colour | None = None, weight: Weight | None = None) -> Cursor:
         """Return a cursor at the same place that writes in another style."""
-        return replace(self, size=size or self.size, colour=colour or self.colour, weight=weight or self.weight)
+        styled = self.column(self.left, self.width)
+        styled.size, styled.colour, styled.weight = size or self.size, colour or self.colour, weight or self.weight
+        return styled
+
+    def column(self, left: float, width: float) -> Cursor:
+        """Return a cursor at the same height in another column."""
+        return Cursor(left, self.y, width, self.scale, self.canvas, self.seen, self.size, self.colour, self.weight)
 
     def measured(self, words: str, size: float | None = None, *, tabular: bool = False) -> float:
         """Return the width of words on one line."""
@@ -74,12 +84,10 @@ class Cursor:
         `tabular` is for words with figures that change: see `Canvas.text`.
         """
         top = self.y
-        shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
         for line in lines(words, self.size, self.weight, self.width, self.scale):
             if self.canvas:
-                place = (self.left + shift * self.width, self.baseline)
-                self.canvas.text(line, place, size=self.size, colour=self.colour, weight=self.weight, align=align,
-                                 alpha=alpha, tabular=tabular)  # fmt: skip
+                place = (self.left + SHIFT[align] * self.width, self.baseline)
+                self.canvas.text(line, place, align=align, alpha=alpha, tabular=tabular, **self.style)
             self.y += LEADING * self.size
         return pygame.FRect(self.left, top, self.width, self.y - top)
 
@@ -117,17 +125,13 @@ class Cursor:
 
     def pair(self, words: str, figure: str, colour: Colour | None = None) -> None:
         """Write words on the left, and a figure at the right end; below them, if there is no room beside them."""
-        wide = self.measured(figure, tabular=True)
-        label = replace(self, width=self.width - wide - _APART)
+        label = self.column(self.left, self.width - self.measured(figure, tabular=True) - _APART)
         if label.width < self.width / 3:
-            label = replace(self)
-            label.text(words)
-            self.y = label.y
+            label = self
+        label.text(words)
         if self.canvas:
-            self.canvas.text(figure, (self.right, self.baseline), size=self.size, align="right", tabular=True,
-                             colour=colour or self.colour, weight=self.weight)  # fmt: skip
-        if label.y == self.y:
-            label.text(words)
+            style = self.in_style(colour=colour).style
+            self.canvas.text(figure, (self.right, self.baseline), align="right", tabular=True, **style)
         self.y = max(label.y, self.y + LEADING * self.size)
 
     def bar(self, share: float, colour: Colour = NET, track: Colour = FAINT) -> None:
@@ -167,7 +171,7 @@ class Cursor:
             return
         left, below = self.left, self.y
         for part, width in zip(parts, widths, strict=True):
-            column = replace(self, left=left, width=width)
+            column = self.column(left, width)
             part(column)
             left, below = left + width + apart, max(below, column.y)
         self.y = below

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache, partial
+from itertools import product
 from typing import Final
 
 from game.drawing import typeface
@@ -10,11 +11,12 @@ from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.typeface import Weight
 
 # Sizes in points that most screens use, and the letters of most words, a few at a time.
-_FONTS: Final[tuple[tuple[float, Weight], ...]] = (
-    (12.5, "regular"), (15.0, "regular"), (12.5, "medium"), (11.5, "medium"), (15.0, "medium"), (11.5, "regular"),
-    (34.0, "light"), (13.5, "regular"), (22.0, "regular"), (14.0, "regular"), (30.0, "light"), (18.0, "regular"),
-    (11.5, "code"),
-)  # fmt: skip
+_FONTS: Final[dict[Weight, tuple[float, ...]]] = {
+    "regular": (12.5, 15.0, 11.5, 13.5, 22.0, 14.0, 18.0),
+    "medium": (12.5, 11.5, 15.0),
+    "light": (34.0, 30.0),
+    "code": (11.5,),
+}
 _LETTERS: Final = ("eatoinsrhldcumfpgwybvkxjqz", "0123456789 .,:;-–'%()[]/=+*_·°", "TASDPCIWRMLNFEHBGOVUKYQJXZ")
 _FEW: Final = 25_000  # pixels of a picture that could be painted in the time that a few letters take
 
@@ -30,7 +32,7 @@ def _loading(scale: float, growth: float) -> InPieces[None]:  # noqa: ARG001 - a
 
 
 def _load(scale: float, share: float) -> Steps[None]:  # noqa: ARG001 - there are no rough letters
-    for size, weight in _FONTS:
-        for letters in _LETTERS:
+    for weight, sizes in _FONTS.items():
+        for size, letters in product(sizes, _LETTERS):
             typeface.open_letters(letters, size, weight, scale)
             yield _FEW

@@ -113,11 +113,7 @@ def profile(length: int, rng: np.random.Generator, cells: float, octaves: int = 
 
 
 def clouds(
-    shape: tuple[int, int],
-    rng: np.random.Generator,
-    cells: tuple[float, float],
-    octaves: int = 4,
-    gain: float = 0.5,
+    shape: tuple[int, int], rng: np.random.Generator, cells: tuple[float, float], octaves: int = 4, gain: float = 0.5
 ) -> Steps[Picture]:
     """Paint smooth fractal noise (rows, columns) in about -1 to 1; `cells` counts humps down and across."""
     total = np.zeros(shape, np.float32)
@@ -160,12 +156,7 @@ class Slope:
 
 
 def slopes(
-    shape: tuple[int, int],
-    rng: np.random.Generator,
-    cells: tuple[float, float],
-    octaves: int,
-    gain: float,
-    stride: int,
+    shape: tuple[int, int], rng: np.random.Generator, cells: tuple[float, float], octaves: int, gain: float, stride: int
 ) -> Steps[tuple[Slope, Slope]]:
     """Paint the slopes of `clouds` of the same arguments, downwards and across, in steps."""
     slope = Slope(shape, stride), Slope(shape, stride)

@@ -38,8 +38,9 @@ class PaintCache:
         key = (canvas.size, canvas.palette, typeface.growth(), width, height, shows)
         painted = self._painted.get(key)
         if painted is None:
-            spare = self._painted.pop(next(iter(self._painted))).surface if len(self._painted) >= self._most else None
-            painted = self._painted[key] = canvas.sheet(width, height, spare)
+            if len(self._painted) >= self._most:
+                del self._painted[next(iter(self._painted))]
+            painted = self._painted[key] = canvas.sheet(width, height)
             paint(painted)
         canvas.lay(painted, x, y)
 

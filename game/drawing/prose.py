@@ -8,19 +8,12 @@ from functools import lru_cache
 from typing import Final
 
 from game.drawing import typeface
-from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import INK, SMALL, Colour
 from game.drawing.typeface import Weight
 
 _LONGEST: Final = 4000  # characters: more than fit on a screen
 _TOGETHER: Final = "\u00a0"  # where no line is broken: as a text says, and between a number and its unit
 _UNIT: Final = re.compile(r"(?<=\d) (?=(?:%|°|[kcm]?m/s²?|[km]?[smgN]|kg|min|h|rad|M|k)(?:[^\w]|$))")
 _BREAKS: Final = re.compile(r"[ \t\n]+")
-
-
-def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
-    """Break a text between words into lines no wider than `width` points; a longer word has a line of its own."""
-    return _broken(text, width, lambda line: canvas.text_width(line, size=size))
 
 
 def _broken(text: str, width: float, measure: Callable[[str], float]) -> list[str]:
@@ -55,25 +48,3 @@ def _pieces(word: str, width: float, measure: Callable[[str], float]) -> Iterato
         yield word[:most]
         word = word[most:]
     yield word
-
-
-def draw_wrapped(
-    canvas: Canvas,
-    text: str,
-    start: Point,
-    width: float,
-    *,
-    size: float = SMALL,
-    colour: Colour = INK,
-    leading: float = 16.0,
-    most: int | None = None,
-) -> float:
-    """Draw a text from its first baseline on, `leading` points from each line to the next, `most` lines at most.
-
-    Return the y of the baseline after the last line, in points.
-    """
-    x, y = start
-    for line in wrapped(canvas, text, size, width)[:most]:
-        canvas.text(line, (x, y), size=size, colour=colour)
-        y += leading
-    return y

@@ -13,7 +13,7 @@ import pygame
 
 from game.drawing.tokens import Colour
 
-Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "tick", "cross", "check"]
+Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "cross", "check"]
 
 _FACTOR: Final = 8  # how many times larger a shape is painted before it is scaled down
 _LARGE_SHAPE: Final = 3.0  # pixels of radius from which shapes are painted half as fine
@@ -26,7 +26,6 @@ _POLYGONS: Final[dict[str, list[tuple[float, float]]]] = {
     "triangle": [(0.0, -0.9), (0.95, 0.75), (-0.95, 0.75)],
     "triangle_down": [(0.0, 0.9), (0.95, -0.75), (-0.95, -0.75)],
     "diamond": [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)],
-    "tick": [(-0.13, -1.0), (0.13, -1.0), (0.13, 1.0), (-0.13, 1.0)],
 }
 _STROKES: Final[dict[str, list[list[tuple[float, float]]]]] = {
     "cross": [[(-0.7, -0.7), (0.7, 0.7)], [(-0.7, 0.7), (0.7, -0.7)]],

@@ -72,7 +72,7 @@ def grow(factor: float) -> None:
     """Enlarge text from now on by `factor`; small text most, and large text not at all."""
     if factor != _Growth.factor:
         _Growth.factor = factor
-        forget()
+        grown.cache_clear()  # all else is kept by the size in pixels
 
 
 def growth() -> float:
@@ -204,14 +204,7 @@ def digits(string: str, pixels: float, weight: Weight, colour: Colour) -> list[t
 
 @lru_cache(maxsize=1024)
 def line(
-    string: str,
-    size: float,
-    weight: Weight,
-    colour: Colour,
-    tabular: bool,
-    scale: float,
-    room: float,
-    least: float,
+    string: str, size: float, weight: Weight, colour: Colour, tabular: bool, scale: float, room: float, least: float
 ) -> tuple[list[tuple[pygame.Surface, float, int]], float, float, float]:
     """Return all that is needed to write a text in one look-up: most words on a screen stay from frame to frame.
 
@@ -297,7 +290,7 @@ def open_letters(letters: str, size: float, weight: Weight, scale: float) -> Non
 
 
 def forget() -> None:
-    """Clear the cache of rendered strings, after a change of the window's size or of the language."""
-    caches = numbers, _opened, grown, reach, extent, digit_width, render, _covered, fitting, span, digits, line
+    """Clear the cache of rendered strings, after a change of the window's size or of the language; fonts stay open."""
+    caches = numbers, reach, digit_width, render, _covered, fitting, span, digits, line
     for cache in caches:
         cache.cache_clear()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Shown = tuple[Source, int | None, Mapping[int, str]]  # a function, its lit line, and what stands beside lines
 _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
-_SPARE: Final = 24.0  # points beside a note, whose letters have whole pixels
+_SPARE: Final = 4.0  # points beside a note, whose letters have whole pixels
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
 _BETWEEN: Final = 12.0  # points between code and notes
 _CODE: Final[Colour] = (190, 198, 214)
@@ -68,7 +68,8 @@ def draw_listing(
         in_line, in_own_row = begins and number not in below, not begins and not text
         if number in notes and (in_line or in_own_row):
             start = area.right - beside if in_line else area.left + _NUMBER
-            canvas.text(notes[number], (start, y), size=LABEL, colour=NET if lit else MUTE, tabular=True)
+            colour, left = NET if lit else MUTE, area.right - start
+            canvas.text(notes[number], (start, y), size=LABEL, colour=colour, tabular=True, room=left)
         for part, colour, column in _coloured(text, lit):
             place_of = (area.left + _NUMBER + column * letter, y)
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)

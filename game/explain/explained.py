@@ -12,7 +12,7 @@ import pygame
 
 from game.core import texts
 from game.drawing.canvas import Canvas, Explanation, Point
-from game.drawing.prose import wrapped
+from game.drawing.prose import lines
 from game.drawing.tokens import INK, LABEL
 from game.input.controls import Command, translate
 from game.ui.actions import Action
@@ -96,7 +96,7 @@ class Explained:
 
 def _draw(canvas: Canvas, area: Explanation) -> None:
     """Draw the tooltip beside its area, or below it at the head of the screen and above it at the foot."""
-    what = wrapped(canvas, area.what, LABEL, _WIDTH)
+    what = _lines(canvas, area.what)
     rows = [row for line in area.now().split("\n") for row in _rows(canvas, line)]
     box, view = area.box, canvas.view
     within = view.inflate(-2 * _MARGIN, -2 * _MARGIN)
@@ -122,4 +122,8 @@ def _rows(canvas: Canvas, line: str) -> list[TooltipRow]:
     word, tab, figure = line.partition("\t")
     if tab:
         return [TooltipRow(word, figure)]
-    return [TooltipRow(each, "") for each in wrapped(canvas, line, LABEL, _WIDTH) if each]
+    return [TooltipRow(each, "") for each in _lines(canvas, line) if each]
+
+
+def _lines(canvas: Canvas, words: str) -> tuple[str, ...]:
+    return lines(words, canvas.grown(LABEL), "regular", _WIDTH, canvas.scale)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
 from ai.lander.pilots import COAST
 from game.core import texts
+from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
 from game.explain.q_values import FIRST, NAME, ROW
@@ -112,5 +113,5 @@ def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, w
 
 def landing_words(landings: Landings, action: int) -> str:
     """Say what comes of an action now."""
-    name, after = texts.said(ACTION_NAMES[action]).capitalize(), landings.after[action]
+    name, after = capital(texts.said(ACTION_NAMES[action])), landings.after[action]
     return texts.EXPLAIN_LANDING_NOW[after.value].format(name=name, seconds=f"{landings.seconds:.1f}")

@@ -13,9 +13,11 @@ import numpy as np
 from ai.agent.decision import Decision
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
+from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.explain.figures import points
 
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
 # both shipped networks 82 % (modern) and 93 % (classic) of the actions that are not the best lie within it.
@@ -80,12 +82,10 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
 
     `top` is the first baseline; the last is `HEIGHT` below it.
     """
-    x, track, right, points = left + NAME, width - NAME - _FIGURE, left + width, signed(values.expected)
+    x, track, right = left + NAME, width - NAME - _FIGURE, left + width
     canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
-    canvas.text(points, (x + track, top), size=TEXT, align="right", tabular=True)
-    canvas.explain(
-        (left, top - 14, width, 20), texts.EXPLAIN_EXPECTED, lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points)
-    )
+    canvas.text(points(values.expected, 1), (x + track, top), size=TEXT, align="right", tabular=True)
+    canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_EXPECTED)
     for action in range(len(ACTION_NAMES)):
         y = top + FIRST + ROW * action
         _draw_row(canvas, values, action, (left, y), width)
@@ -145,28 +145,23 @@ def decision_words(decision: Decision) -> Sequence[str]:
     if not decision.kept[0]:
         return texts.Q_BEST_FLOWN, ""
     kept, best = (texts.said(ACTION_NAMES[int(action[0])]) for action in (decision.action, decision.best))
-    names = {"kept": kept.capitalize(), "best": best}
+    names = {"kept": capital(kept), "best": best}
     return [line.format(margin=f"{decision.margin:.3g}", **names) for line in texts.Q_KEPT]
 
 
 def value_words(values: QValues, action: int) -> str:
     """Say what the value of an action means now."""
-    name = texts.said(ACTION_NAMES[action]).capitalize()
+    name = capital(texts.said(ACTION_NAMES[action]))
     if not values.readable:
         return texts.EXPLAIN_VALUE_NONE.format(name=name)
-    loss, points = values.loss(action), signed(values.points[action])
-    best = texts.EXPLAIN_VALUE_BEST.format(name=name, points=points)
-    said = [texts.EXPLAIN_VALUE_LESS.format(name=name, points=points, loss=behind(loss).lstrip("−")) if loss else best]
+    loss, value = values.loss(action), points(values.points[action], 1)
+    words = texts.EXPLAIN_VALUE_LESS if loss else texts.EXPLAIN_VALUE_BEST
+    said = [words.format(name=name, points=value, loss=behind(loss).lstrip("−"))]
     if loss > SPAN:
         said.append(texts.EXPLAIN_VALUE_OUTSIDE)
     if action == values.flown:
         said.append(texts.EXPLAIN_VALUE_FLOWN)
     return " ".join(said)
-
-
-def signed(points: float) -> str:
-    """Format points of reward with their sign; a dash if not finite."""
-    return f"{points:+.1f}".replace("-", "−") if math.isfinite(points) else "–"
 
 
 def behind(loss: float) -> str:

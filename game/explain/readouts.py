@@ -303,27 +303,11 @@ def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
     canvas.pill(line, colour)
 
 
-def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
+def draw_corner(canvas: Canvas, small: str, large: str) -> None:
     """Draw the flight's name and its goal in the top left corner."""
     canvas = canvas.at(-1, -1)
     canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
     canvas.text(large, (MARGIN, 58), size=TEXT)
-    canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
-
-
-def draw_centred_bars(
-    canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, step: float
-) -> None:
-    """Draw values from -1 to 1 as bars that grow from the middle, beside their names."""
-    track = width - 96
-    middle = left + 96 + track / 2
-    for number, value in enumerate(values):
-        y = top + step * number
-        canvas.pill((left + 96, y - 1, track, 2), FAINT, 0.5)
-        reach = min(max(value, -1.0), 1.0) * track / 2
-        if abs(reach) >= 1:
-            canvas.pill((min(middle, middle + reach), y - 1.5, abs(reach), 3), NET)
-        canvas.line((middle, y - 4), (middle, y + 4), MUTE)
 
 
 def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float, who: str) -> None:
@@ -357,8 +341,4 @@ def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None
     canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
     counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
     canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)
-    canvas.explain(
-        (left - 4, top - 30, 180, 58),
-        texts.EXPLAIN_LANDINGS,
-        lambda: texts.EXPLAIN_LANDINGS_NOW.format(landed=landed, all=landed + lost),
-    )
+    canvas.explain((left - 4, top - 30, 180, 58), texts.EXPLAIN_LANDINGS)

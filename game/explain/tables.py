@@ -37,10 +37,13 @@ def table(head: Sequence[str], lines: Callable[[], Sequence[Line]]) -> Callable[
     def write(cursor: Cursor) -> None:
         small, label, shown = cursor.in_style(SMALL), cursor.in_style(CAPTION, MUTE), lines()
         widths = [
-            max(label.measured(head[place]) if head else 0.0,
-                *(small.measured(line.cells[place], tabular=True) for line in shown)) + _APART
+            max(
+                label.measured(head[place]) if head else 0.0,
+                *(small.measured(line.cells[place], tabular=True) for line in shown),
+            )
+            + _APART
             for place in range(1, len(shown[0].cells))
-        ]  # fmt: skip
+        ]
         if head:
             _write_cells(label, head, widths)
             cursor.y = label.y + _PAD

@@ -11,11 +11,11 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.files import Count, OneOf, Sized, append_line, read_lines
+from ai.files import Count, OneOf, Sized, append_line
 from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.flight.flight_file import Entry, Record
+from game.flight.flight_file import Entry, Record, lines_of
 from game.flight.logbook import Records
 
 FILE_NAME: Final = "days.jsonl"
@@ -74,19 +74,10 @@ class Days:
     def __init__(self, user_dir: Path) -> None:
         self._path, self._records = user_dir / FILE_NAME, Records(user_dir)
         self._flown: list[Entry] | None = None  # flights of starts of the day, once they have been asked for
-        self.problem = ""
         self.attempts: Mapping[str, Attempt] = self._read()
 
     def _read(self) -> dict[str, Attempt]:
-        try:
-            attempts, damaged = read_lines(Attempt, self._path, _LARGEST)
-        except FileNotFoundError:
-            return {}
-        except OSError as error:
-            self.problem = texts.FLIGHTS_UNREADABLE.format(path=self._path, reason=error.strerror or error)
-            return {}
-        if damaged:
-            self.problem = texts.DAYS_DAMAGED.format(count=damaged, path=self._path)
+        attempts, self.problem = lines_of(Attempt, self._path, _LARGEST)
         found: dict[str, Attempt] = {}
         for attempt in attempts:
             before = found.get(attempt.day)

@@ -22,9 +22,15 @@ if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
     from game.flight.guard import Guard
 
-__all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
+__all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder", "start_of"]
 
+_START: Final = ("spawn", "pads", "mission", "easing", "area", "leg")  # what makes a flight's start, with its seed
 _STEERING: Final = ScriptedPilot()  # fires the jets for a person who flies with one switch
+
+
+def start_of(recording: Recording) -> dict[str, Any]:
+    """Return what a `Flight` from the same start as a recorded one is made with, besides the seed."""
+    return {name: getattr(recording, name) for name in _START}
 
 
 class Flight:

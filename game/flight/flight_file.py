@@ -13,9 +13,21 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, TypeVar
 
-from ai.files import OneOf, Share, Sized, Within, brief, check_header, parse_json, read_as, read_text, write_text
+from ai.files import (
+    OneOf,
+    Share,
+    Sized,
+    Within,
+    brief,
+    check_header,
+    parse_json,
+    read_as,
+    read_lines,
+    read_text,
+    write_text,
+)
 from ai.flights.recording import LONGEST, STEPS, End, LegAsList, Recording, Shares, Start, StickHolder
 from ai.flights.verification import COURSES
 from ai.lander.environment import NUM_ACTIONS, Outcome
@@ -24,6 +36,7 @@ from ai.lander.rules import AREAS
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.core import texts
 
+T = TypeVar("T")
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 5
 # Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no shares
@@ -107,6 +120,20 @@ def rules_of(challenge: str) -> int:
     return MISSIONS[challenge].rules if challenge in MISSIONS else 0
 
 
+def lines_of(kind: type[T], path: Path, most: int) -> tuple[list[T], str]:
+    """Return the sound lines in the last `most` bytes of a file, and a sentence on what is wrong; empty if nothing.
+
+    Invalid lines stay in the file.
+    """
+    try:
+        found, lost = read_lines(kind, path, most)
+    except FileNotFoundError:
+        return [], ""
+    except OSError as error:
+        return [], texts.FLIGHTS_UNREADABLE.format(path=path, reason=error.strerror or error)
+    return found, texts.FLIGHTS_DAMAGED.format(count=lost, path=path) if lost else ""
+
+
 @dataclass(frozen=True)
 class Record:
     """Contents of a flight's file; `end` is the last pose x, y, angle, to check a replay against."""
@@ -150,10 +177,9 @@ def write(path: Path, record: Record) -> None:
 def to_text(record: Record) -> str:
     """Return a record as the text of a flight's file."""
     recording = record.recording
-    saved = {"format": FORMAT, "version": VERSION} | recording.start() | {
-        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
-        "shares": _packed_shares(recording), "end": record.end, "entry": asdict(record.entry),
-    }  # fmt: skip
+    saved = {"format": FORMAT, "version": VERSION} | recording.start()
+    saved |= {"actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands)}
+    saved |= {"shares": _packed_shares(recording), "end": record.end, "entry": asdict(record.entry)}
     return json.dumps(saved, indent=1) + "\n"
 
 

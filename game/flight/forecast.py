@@ -156,8 +156,6 @@ class _Latest:
 
 
 @lru_cache(maxsize=8)
-@lru_cache(maxsize=8)
 def heights(ground: Ground) -> list[float]:
     """Return the ground's height at even steps, `HEIGHT_STEP` metres apart, from `REACH` to the left on."""
-    found: list[float] = ground.height(np.arange(-REACH, REACH, HEIGHT_STEP)).tolist()
-    return found
+    return list(ground.height(np.arange(-REACH, REACH, HEIGHT_STEP)).tolist())

@@ -13,7 +13,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-from ai.files import append_line, brief, free_path, read_lines
+from ai.files import append_line, brief, free_path
 from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
 from game.core.names import LibraryError
@@ -89,16 +89,7 @@ class Records:
 
         Invalid lines are counted in `problem` and left in the file.
         """
-        self.problem = ""
-        try:
-            found, damaged = read_lines(Entry, self.logbook, _LARGEST)
-        except FileNotFoundError:
-            return []
-        except OSError as error:
-            self.problem = texts.FLIGHTS_UNREADABLE.format(path=self.logbook, reason=error.strerror or error)
-            return []
-        if damaged:
-            self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)
+        found, self.problem = flight_file.lines_of(Entry, self.logbook, _LARGEST)
         return found
 
     def kept(self) -> set[str]:

@@ -11,6 +11,7 @@ import numpy as np
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts
+from game.core.catalogue import capital
 
 _LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
 _GOOD: Final = 0.4  # of a limit, up to which a landing is a good one
@@ -60,30 +61,30 @@ class RivalOutcome:
     figures: dict[str, tuple[str, str]]  # value and unit by label
 
 
-def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
+def outcome_card(env: LanderEnv, human: float) -> OutcomeCard:
     """Return the outcome card of a flight that has ended; `human` is the person's share of the steps, 0 to 1."""
-    outcome, intact = Outcome(int(env.outcome[slot])), bool(env.intact[slot])
+    outcome, intact = Outcome(int(env.outcome[0])), bool(env.intact[0])
     title, reason = ending_word(outcome.name, intact=intact), texts.OUTCOMES[outcome.name][1]
     if outcome is Outcome.CRASHED:
-        reason = crash_reason(env, slot)
+        reason = crash_reason(env)
     elif outcome is Outcome.OUT_OF_BOUNDS:
-        reason = reason.format(where=_where_left(env, slot))
+        reason = reason.format(where=_where_left(env))
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
-    advice, figures = texts.ADVICE.get(cause_of(env, slot).name, ""), flight_figures(env, slot)
+    advice, figures = texts.ADVICE.get(cause_of(env).name, ""), flight_figures(env)
     if outcome is not Outcome.LANDED:
         return OutcomeCard(False, title, reason, figures, human, advice=advice, intact=intact)
-    met = qualities(env, slot)
+    met = qualities(env)
     title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
-    quality = texts.AND.join(texts.QUALITIES[name] for name in met).capitalize()
+    quality = capital(texts.AND.join(texts.QUALITIES[name] for name in met))
     return OutcomeCard(True, title, reason, figures, human, quality=quality)
 
 
-def qualities(env: LanderEnv, slot: int = 0) -> list[str]:
+def qualities(env: LanderEnv) -> list[str]:
     """Return what was good about a landing: it was soft, centred, upright, keys of `texts.QUALITIES`."""
-    speed, _, tilt = env.impact[slot].tolist()
-    pad = env.ground.pads[int(env.landed_on[slot])]
-    aside = abs(float(env.position[slot, 0] - env.pad_shift[slot]) - pad.x)
+    speed, _, tilt = env.impact[0].tolist()
+    pad = env.ground.pads[int(env.landed_on[0])]
+    aside = abs(float(env.position[0, 0] - env.pad_shift[0]) - pad.x)
     met = {
         "soft": speed <= _GOOD * env.limits.touch_speed,
         "centred": aside <= _GOOD * pad.width / 2,
@@ -92,24 +93,24 @@ def qualities(env: LanderEnv, slot: int = 0) -> list[str]:
     return [name for name, good in met.items() if good]
 
 
-def _where_left(env: LanderEnv, slot: int) -> str:
+def _where_left(env: LanderEnv) -> str:
     """Return which edge of the area a lander has crossed, in words; heights are above the pad, as in the read-out."""
     limits = env.limits
-    if env.position[slot, 1] > limits.ceiling:
-        height = limits.ceiling - float(env.position[slot, 1] - env.altitude[slot])
+    if env.position[0, 1] > limits.ceiling:
+        height = limits.ceiling - float(env.position[0, 1] - env.altitude[0])
         return texts.LEFT_AT_THE_TOP.format(height=height)
     return texts.LEFT_AT_THE_SIDE.format(width=limits.half_width)
 
 
-def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str], ...]:
+def flight_figures(env: LanderEnv) -> tuple[tuple[str, str, str], ...]:
     """Return the figures of a flight that has ended: label, value, unit."""
     figures = [
-        (texts.TIME, f"{tenths(float(env.time[slot])):.1f}", "s"),
-        (texts.FUEL, f"{tenths(float(env.fuel[slot])):.1f}", "s"),
+        (texts.TIME, f"{tenths(float(env.time[0])):.1f}", "s"),
+        (texts.FUEL, f"{tenths(float(env.fuel[0])):.1f}", "s"),
     ]
-    if env.outcome[slot] in (Outcome.LANDED, Outcome.CRASHED):
-        figures.append((texts.TOUCHDOWN, f"{touch_speed(env, slot):.1f}", "m/s"))
-    away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
+    if env.outcome[0] in (Outcome.LANDED, Outcome.CRASHED):
+        figures.append((texts.TOUCHDOWN, f"{touch_speed(env):.1f}", "m/s"))
+    away = abs(float(env.position[0, 0] - env.pad[0, 0]))
     return (*figures, (texts.FROM_MIDDLE, f"{away:.1f}", "m"))
 
 
@@ -118,26 +119,26 @@ def ending_word(outcome: str, *, intact: bool) -> str:
     return texts.BESIDE_TITLE if intact else texts.OUTCOMES[outcome][0]
 
 
-def cause_of(env: LanderEnv, slot: int = 0) -> Cause:
+def cause_of(env: LanderEnv) -> Cause:
     """Return why a craft broke, the cause before its symptom: one that had tipped over could not brake any more.
 
     Of a hard touch beside the pad it is the limit that was exceeded, as the place breaks nothing.
     """
-    cause = Cause(int(env.cause[slot]))
-    if cause is not Cause.NONE and _tipped(env, slot):
+    cause = Cause(int(env.cause[0]))
+    if cause is not Cause.NONE and _tipped(env):
         return Cause.TILTED
-    if cause is not Cause.TERRAIN or env.intact[slot]:
+    if cause is not Cause.TERRAIN or env.intact[0]:
         return cause
-    return next(cause for cause, (value, limit) in _exceeded(env, slot).items() if value > limit)
+    return next(cause for cause, (value, limit) in _exceeded(env).items() if value > limit)
 
 
-def _tipped(env: LanderEnv, slot: int) -> bool:
-    return bool(env.impact[slot, 2] > TIPPED)
+def _tipped(env: LanderEnv) -> bool:
+    return bool(env.impact[0, 2] > TIPPED)
 
 
-def _exceeded(env: LanderEnv, slot: int) -> dict[Cause, tuple[float, float]]:
+def _exceeded(env: LanderEnv) -> dict[Cause, tuple[float, float]]:
     """Return what the craft's touches came to, and its limit, for every cause that has one."""
-    (speed, slide, tilt), limits = env.impact[slot].tolist(), env.limits
+    (speed, slide, tilt), limits = env.impact[0].tolist(), env.limits
     return {
         Cause.HARD: (speed, limits.touch_speed),
         Cause.SLIDING: (slide, limits.slide_speed),
@@ -145,32 +146,32 @@ def _exceeded(env: LanderEnv, slot: int) -> dict[Cause, tuple[float, float]]:
     }
 
 
-def touch_speed(env: LanderEnv, slot: int = 0) -> float:
+def touch_speed(env: LanderEnv) -> float:
     """Return how fast the craft came down, in m/s: into the ground or, against a steep side, in all."""
-    into, along = env.impact[slot, :2].tolist()
-    return math.hypot(into, along) if struck_side(env, slot) else into
+    into, along = env.impact[0, :2].tolist()
+    return math.hypot(into, along) if struck_side(env) else into
 
 
-def struck_side(env: LanderEnv, slot: int = 0) -> bool:
+def struck_side(env: LanderEnv) -> bool:
     """Return whether a craft has just broken on a steep side: down and across are not into and along it."""
-    touches, cause = env.world.contacts, cause_of(env, slot)
+    touches, cause = env.world.contacts, cause_of(env)
     if touches is None or cause not in (Cause.HARD, Cause.SLIDING):
         return False
-    here = np.flatnonzero(touches.world == slot)
+    here = np.flatnonzero(touches.world == 0)
     if not len(here):
         return False
     hardest = here[np.abs(touches.approach[here]).max(axis=1).argmax()]
     return bool(abs(touches.normal[hardest, 1]) < _LEVEL)
 
 
-def crash_reason(env: LanderEnv, slot: int = 0) -> str:
+def crash_reason(env: LanderEnv) -> str:
     """Return which limit the lander exceeded, and by how much."""
-    cause, limits = cause_of(env, slot), _exceeded(env, slot)
+    cause, limits = cause_of(env), _exceeded(env)
     value, limit = limits.get(cause, (0.0, 0.0))
-    steep = struck_side(env, slot)
-    value = touch_speed(env, slot) if steep else value
-    if cause is Cause.TILTED and _tipped(env, slot):
-        return texts.TIPPED_OVER.format(tilt=f"{value:.0f}", speed=f"{touch_speed(env, slot):.1f}")
+    steep = struck_side(env)
+    value = touch_speed(env) if steep else value
+    if cause is Cause.TILTED and _tipped(env):
+        return texts.TIPPED_OVER.format(tilt=f"{value:.0f}", speed=f"{touch_speed(env):.1f}")
     words = texts.CRASHED_SIDEWAYS if steep else texts.CAUSES[cause.name]
     shown = _beyond(value, limit, 0 if cause is Cause.TILTED else 1) if cause in limits else ("", "")
     return words.format(value=shown[0], limit=shown[1])

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import shutil
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
@@ -30,15 +30,6 @@ _LOGBOOK: Final = 500_000_000  # and of a logbook, which grows by a line for eac
 _MOST: Final = 5  # resets that can be undone
 
 
-@dataclass(frozen=True)
-class ProgressFigures:
-    """What a reset would put away, as figures for the question before it."""
-
-    flights: int
-    medals: int
-    chapters: int
-
-
 class Progress:
     """Progress in a player's folder and settings. Methods that fail raise LibraryError, a sentence for the player."""
 
@@ -47,11 +38,11 @@ class Progress:
         self._trash = Trash(user_dir, _MOST)
 
     @property
-    def figures(self) -> ProgressFigures:
-        """What there is now."""
+    def figures(self) -> tuple[int, int, int]:
+        """How many flights, medals and chapters a reset would put away."""
         entries = Records(self._folder).entries()
         medals = {entry.course for entry in entries if entry.medal and not entry.outdated}
-        return ProgressFigures(len(entries), len(medals), len(self._settings.learnt))
+        return len(entries), len(medals), len(self._settings.learnt)
 
     @property
     def restorable(self) -> bool:

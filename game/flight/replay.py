@@ -11,7 +11,7 @@ from ai.flights.recording import Shares
 from ai.flights.verification import Earned, earned
 from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
-from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
+from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder, start_of
 from game.flight.flight_file import Record
 
 _EVERY: Final = 20  # steps between the snapshots from which `go_to` starts
@@ -22,10 +22,7 @@ class ReplayedFlight(Flight):
     """Flight that repeats recorded actions and ignores the keys; it stops at the end of the flight or recording."""
 
     def __init__(self, source: Recording) -> None:
-        super().__init__(
-            source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission, easing=source.easing,
-            area=source.area, leg=source.leg,
-        )  # fmt: skip
+        super().__init__(source.seed, **start_of(source))
         self._source = source
 
     @property
@@ -45,10 +42,8 @@ class ReplayedFlight(Flight):
             return COAST, self.flown_by, None
         self.hand = self._source.hands[self.at]
         self.set_gravity(self._source.gravity_at(self.at))
-        if (
-            self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0
-        ):  # the read-outs were aimed at a pad then, too
-            self.aim()
+        if self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0:
+            self.aim()  # as the read-outs then were
         return self._source.actions[self.at], self.hand, self._source.shares.get(self.at)
 
 

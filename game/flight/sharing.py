@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
 
@@ -35,17 +35,15 @@ def code(record: Record) -> str:
     return code_of(shared(record))
 
 
-def record_of(flight: SharedFlight, when: float, real: Earned | None = None) -> Record:
-    """Return the record of a shared flight: as it is claimed, or as it is `real`, once it has been flown again."""
+def record_of(flight: SharedFlight, when: float) -> Record:
+    """Return the record of a shared flight as it is claimed."""
     recording, claim = flight.recording, flight.claim
-    outcome, points, end = (real.outcome, real.points, real.end) if real else (claim.outcome, claim.points, claim.end)
+    seconds = len(recording.actions) * DT
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
-    entry = Entry(
-        when, outcome.name, real.seconds if real else len(recording.actions) * DT, real.fuel if real else 0.0, 0.0,
-        round(by_hand, 4), pads=recording.pads, score=points, course=flight.course, barred=flight.barred,
-        medal=real.medal if real else 0, rules=flight_file.rules_of(recording.mission),
-    )  # fmt: skip
-    return Record(recording, entry, end)
+    entry = Entry(when, claim.outcome.name, seconds, 0.0, 0.0, round(by_hand, 4), pads=recording.pads)
+    rules = flight_file.rules_of(recording.mission)
+    entry = replace(entry, score=claim.points, course=flight.course, barred=flight.barred, rules=rules)
+    return Record(recording, entry, claim.end)
 
 
 def flights_in(text: str) -> Iterator[SharedFlight | str]:

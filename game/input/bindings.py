@@ -53,86 +53,60 @@ Table = Mapping[Meaning, tuple[int, ...]]
 
 # A gamepad's triggers are axes; they are treated as further buttons, pressed or not.
 TRIGGER_LEFT, TRIGGER_RIGHT = 32, 33
-TRIGGERS: Final = {
-    pygame.CONTROLLER_AXIS_TRIGGERLEFT: TRIGGER_LEFT,
-    pygame.CONTROLLER_AXIS_TRIGGERRIGHT: TRIGGER_RIGHT,
-}
+TRIGGERS: Final = {pygame.CONTROLLER_AXIS_TRIGGERLEFT: TRIGGER_LEFT, pygame.CONTROLLER_AXIS_TRIGGERRIGHT: TRIGGER_RIGHT}
 
-# Fixed bindings.
-FIXED_KEYS: Final[Table] = {
-    Command.CONFIRM: (pygame.K_RETURN, pygame.K_KP_ENTER),
-    Command.BACK: (pygame.K_BACKSPACE, pygame.K_AC_BACK),
-    Command.PAUSE: (pygame.K_ESCAPE,),
-    Command.UP: (pygame.K_UP,),
-    Command.DOWN: (pygame.K_DOWN,),
-    Command.LEFT: (pygame.K_LEFT,),
-    Command.RIGHT: (pygame.K_RIGHT,),
+# Bindings of keys, and of a gamepad's buttons: those that are fixed.
+_FIXED: Final[Mapping[Meaning, tuple[tuple[int, ...], tuple[int, ...]]]] = {
+    Command.CONFIRM: ((pygame.K_RETURN, pygame.K_KP_ENTER), (pygame.CONTROLLER_BUTTON_A,)),
+    Command.BACK: ((pygame.K_BACKSPACE, pygame.K_AC_BACK), (pygame.CONTROLLER_BUTTON_B,)),
+    Command.PAUSE: ((pygame.K_ESCAPE,), (pygame.CONTROLLER_BUTTON_START,)),
+    Command.UP: ((pygame.K_UP,), (pygame.CONTROLLER_BUTTON_DPAD_UP,)),
+    Command.DOWN: ((pygame.K_DOWN,), (pygame.CONTROLLER_BUTTON_DPAD_DOWN,)),
+    Command.LEFT: ((pygame.K_LEFT,), (pygame.CONTROLLER_BUTTON_DPAD_LEFT,)),
+    Command.RIGHT: ((pygame.K_RIGHT,), (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,)),
 }
-FIXED_BUTTONS: Final[Table] = {
-    Command.CONFIRM: (pygame.CONTROLLER_BUTTON_A,),
-    Command.BACK: (pygame.CONTROLLER_BUTTON_B,),
-    Command.PAUSE: (pygame.CONTROLLER_BUTTON_START,),
-    Command.UP: (pygame.CONTROLLER_BUTTON_DPAD_UP,),
-    Command.DOWN: (pygame.CONTROLLER_BUTTON_DPAD_DOWN,),
-    Command.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
-    Command.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
+# And the defaults of those that the player can change, in the order of the list. An engine may share a key with the
+# menus: Up thrusts in flight and moves in a menu.
+_CHANGEABLE: Final[Mapping[Meaning, tuple[tuple[int, ...], tuple[int, ...]]]] = {
+    Held.MAIN: (
+        (pygame.K_UP, pygame.K_SPACE, pygame.K_w),
+        (pygame.CONTROLLER_BUTTON_A, TRIGGER_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_UP),
+    ),
+    Held.LEFT: ((pygame.K_LEFT, pygame.K_a), (pygame.CONTROLLER_BUTTON_DPAD_LEFT,)),
+    Held.RIGHT: ((pygame.K_RIGHT, pygame.K_d), (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,)),
+    Held.FINE: ((pygame.K_LSHIFT, pygame.K_RSHIFT), (TRIGGER_LEFT,)),
+    Command.HANDOVER: ((pygame.K_TAB,), (pygame.CONTROLLER_BUTTON_Y,)),
+    Command.RETRY: ((pygame.K_r,), (pygame.CONTROLLER_BUTTON_X,)),
+    Command.PAUSE: ((pygame.K_p,), ()),
+    Command.CHOICES: ((pygame.K_c,), (pygame.CONTROLLER_BUTTON_BACK,)),
+    Command.SLOWER: ((pygame.K_MINUS, pygame.K_KP_MINUS, pygame.K_LEFTBRACKET), ()),
+    Command.FASTER: ((pygame.K_PLUS, pygame.K_EQUALS, pygame.K_KP_PLUS, pygame.K_RIGHTBRACKET), ()),
+    Command.MODE: ((pygame.K_g,), (pygame.CONTROLLER_BUTTON_LEFTSTICK,)),
+    Command.STEP: ((pygame.K_PERIOD,), (pygame.CONTROLLER_BUTTON_RIGHTSTICK,)),
+    Command.NEXT: ((pygame.K_n, pygame.K_PAGEDOWN), (pygame.CONTROLLER_BUTTON_RIGHTSHOULDER,)),
+    Command.PREVIOUS: ((pygame.K_b, pygame.K_PAGEUP), (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,)),
+    Command.FULLSCREEN: ((pygame.K_F11,), ()),
+    Command.SCREENSHOT: ((pygame.K_F12,), ()),
+    Command.MUTE: ((pygame.K_F10,), ()),
 }
-# Default bindings the player can change, in the order of the list. An engine may share a key with the menus:
-# Up thrusts in flight and moves in a menu.
-KEYS: Final[Table] = {
-    Held.MAIN: (pygame.K_UP, pygame.K_SPACE, pygame.K_w),
-    Held.LEFT: (pygame.K_LEFT, pygame.K_a),
-    Held.RIGHT: (pygame.K_RIGHT, pygame.K_d),
-    Held.FINE: (pygame.K_LSHIFT, pygame.K_RSHIFT),
-    Command.HANDOVER: (pygame.K_TAB,),
-    Command.RETRY: (pygame.K_r,),
-    Command.PAUSE: (pygame.K_p,),
-    Command.CHOICES: (pygame.K_c,),
-    Command.SLOWER: (pygame.K_MINUS, pygame.K_KP_MINUS, pygame.K_LEFTBRACKET),
-    Command.FASTER: (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_KP_PLUS, pygame.K_RIGHTBRACKET),
-    Command.MODE: (pygame.K_g,),
-    Command.STEP: (pygame.K_PERIOD,),
-    Command.NEXT: (pygame.K_n, pygame.K_PAGEDOWN),
-    Command.PREVIOUS: (pygame.K_b, pygame.K_PAGEUP),
-    Command.FULLSCREEN: (pygame.K_F11,),
-    Command.SCREENSHOT: (pygame.K_F12,),
-    Command.MUTE: (pygame.K_F10,),
-}
-BUTTONS: Final[Table] = {
-    Held.MAIN: (pygame.CONTROLLER_BUTTON_A, TRIGGER_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_UP),
-    Held.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
-    Held.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
-    Held.FINE: (TRIGGER_LEFT,),
-    Command.HANDOVER: (pygame.CONTROLLER_BUTTON_Y,),
-    Command.RETRY: (pygame.CONTROLLER_BUTTON_X,),
-    Command.PAUSE: (),
-    Command.CHOICES: (pygame.CONTROLLER_BUTTON_BACK,),
-    Command.SLOWER: (),
-    Command.FASTER: (),
-    Command.MODE: (pygame.CONTROLLER_BUTTON_LEFTSTICK,),
-    Command.STEP: (pygame.CONTROLLER_BUTTON_RIGHTSTICK,),
-    Command.NEXT: (pygame.CONTROLLER_BUTTON_RIGHTSHOULDER,),
-    Command.PREVIOUS: (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,),
-    Command.FULLSCREEN: (),
-    Command.SCREENSHOT: (),
-    Command.MUTE: (),
-}
+FIXED_KEYS, FIXED_BUTTONS = ({meaning: codes[device] for meaning, codes in _FIXED.items()} for device in (0, 1))
+KEYS, BUTTONS = ({meaning: codes[device] for meaning, codes in _CHANGEABLE.items()} for device in (0, 1))
 # Meanings that give way: a key bound elsewhere is taken from them, also by settings saved before they existed.
 GIVE_WAY: Final = frozenset({Held.FINE, Command.MUTE})
 # Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {
-    pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT,
+    pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT
 }  # fmt: skip
 # Keys that screens, lists and text lines use themselves, and modifier keys.
 _TAKEN_KEYS: Final = frozenset({
     pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F2, pygame.K_z,
     *range(pygame.K_0, pygame.K_9 + 1), *range(pygame.K_KP1, pygame.K_KP0 + 1),
-    pygame.K_LALT, pygame.K_RALT, pygame.K_LGUI, pygame.K_RGUI, pygame.K_CAPSLOCK, pygame.K_NUMLOCK,
+    pygame.K_LALT, pygame.K_RALT, pygame.K_LGUI, pygame.K_RGUI, pygame.K_CAPSLOCK, pygame.K_NUMLOCK
 })  # fmt: skip
 _ENGINE_KEYS: Final = frozenset({pygame.K_UP, pygame.K_DOWN, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_SPACE})
 _ENGINE_BUTTONS: Final = frozenset({
     pygame.CONTROLLER_BUTTON_A, pygame.CONTROLLER_BUTTON_B, pygame.CONTROLLER_BUTTON_DPAD_UP,
-    pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_LEFT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
+    pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_LEFT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT
 })  # fmt: skip
 
 
@@ -166,7 +140,7 @@ class Device:
 KEYBOARD: Final = Device(KEYS, FIXED_KEYS, _SPARE_KEYS, _TAKEN_KEYS, _ENGINE_KEYS, _named("K_"))
 PAD: Final = Device(
     BUTTONS, FIXED_BUTTONS, {}, frozenset(), _ENGINE_BUTTONS,
-    {**_named("CONTROLLER_BUTTON_"), "triggerleft": TRIGGER_LEFT, "triggerright": TRIGGER_RIGHT},
+    {**_named("CONTROLLER_BUTTON_"), "triggerleft": TRIGGER_LEFT, "triggerright": TRIGGER_RIGHT}
 )  # fmt: skip
 
 

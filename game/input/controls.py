@@ -286,8 +286,3 @@ def key_name(code: int) -> str:
         return texts.KEY_NAMES[name]
     plain = name.removeprefix("kp").removeprefix("_").title()
     return texts.KEY_OF_PAD.format(name=plain) if name.startswith("kp") else plain
-
-
-def names(words: Iterable[str]) -> str:
-    """Join the names of several keys, or signs."""
-    return "   ".join(words)

@@ -84,7 +84,7 @@ class App:
         self._follow_window()
         context.note = self.notes.show
         context.apply_settings = self.apply_settings
-        context.in_window, context.view = self.canvas.in_window, self.canvas.view
+        context.view = self.canvas.view
         context.reading = lambda: self.canvas.reading
         self._look()
         context.sound.follow(context.settings)

@@ -54,15 +54,12 @@ class SavedDigitModel:
         return ""
 
 
-def _read_model(folder: Path, name: str) -> SavedDigitModel:  # noqa: ARG001 - a kind of item is given its name too
-    return SavedDigitModel(folder, folder / FIXES)
-
-
 class DigitModels(Collection[SavedDigitModel]):
     """Collection of a player's own digit networks in `folder`."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(folder, ItemKind(PARTS, _read_model, lambda: texts.RUN_UNNAMED))
+        kind = ItemKind(PARTS, lambda model, _: SavedDigitModel(model, model / FIXES), lambda: texts.RUN_UNNAMED)
+        super().__init__(folder, kind)
 
 
 def runs_dir(user_dir: Path) -> Path:

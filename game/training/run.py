@@ -35,10 +35,10 @@ _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
     DigitLesson: "lesson", Confusion: "confusion", NetworkEdits: "edits",
 }  # fmt: skip
-_KEPT: Final = {
-    SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters",
-    **dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history"),
-}  # fmt: skip
+_ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
+_KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
+# What an experiment has reported that takes the place of the run.
+_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits", "in_force"
 _BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
 
 
@@ -68,7 +68,7 @@ class TrainingRun:
         self.kind, self.collection, self._keeps = kind, collection, keeps
         self.name, self.runs, self.pace = "", 0, len(PACES) - 1
         self._worker: Worker | None = None
-        self._launch: Callable[[], str] | None = None  # starts the waiting run; returns a note for the player
+        self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
         self.pay: Path | None = None
         self.pays: tuple[Path, ...] = ()
@@ -103,7 +103,7 @@ class TrainingRun:
     @property
     def waiting(self) -> bool:
         """Whether a run waits for the previous one to end."""
-        return self._launch is not None
+        return self._next is not None
 
     @property
     def state(self) -> WorkerState | None:
@@ -160,9 +160,23 @@ class TrainingRun:
         self._named = resume is not None and resume != self.collection.unsaved
         self.name = resume.name if resume else ""
         self.call(name)
-        return self._start(lambda: self._begin(config, seed, resume))
+        self._next = config, seed, resume
+        self._orders.clear()
+        if self._worker:
+            self._worker.stop()
+        return self._start_waiting()
 
-    def _begin(self, config: Any, seed: int, resume: Path | None) -> str:
+    def _start_waiting(self) -> str:
+        """Start the waiting run, if the previous process has ended; return a note."""
+        if self._next is None or (self._worker and not self._worker.gone):
+            return ""
+        begun, self._next = self._next, None
+        note = self._launch(*begun)
+        while self._orders:
+            self._order(self._orders.pop(0))
+        return note
+
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
         keep, notes = self.collection.unsaved if self._keeps else None, self._name_ended()
         try:
             if resume is not None:
@@ -171,30 +185,12 @@ class TrainingRun:
                 self.collection.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        pay: dict[str, Any] = {"pay": self.pay} if self.pay and resume is None else {}
-        if resume is not None and self.pays:
-            pay = {"pays": self.pays}
+        pay: dict[str, Any] = {"pays": self.pays} if resume else {"pay": self.pay}
+        pay = {name: each for name, each in pay.items() if each}  # runs of digits are never paid
         self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
         return " ".join(notes)
-
-    def _start(self, launch: Callable[[], str]) -> str:
-        self._launch = launch
-        self._orders.clear()
-        if self._worker:
-            self._worker.stop()
-        return self._start_waiting()
-
-    def _start_waiting(self) -> str:
-        """Start the waiting run, if the previous process has ended; return a note."""
-        if self._launch is None or (self._worker and not self._worker.gone):
-            return ""
-        launch, self._launch = self._launch, None
-        note = launch()
-        while self._orders:
-            self._order(self._orders.pop(0))
-        return note
 
     def call(self, settings: str) -> None:
         """Name the run after its settings, with a number, unless it was saved under a name."""
@@ -204,7 +200,7 @@ class TrainingRun:
     def stop(self) -> None:
         """End the run, save its network and measure it. A second call ends it without that."""
         if self.waiting:
-            self._launch = None
+            self._next = None
         elif self.alive and self.steps and not self.stopping:
             self.stopping = True
             self.ask("finish")
@@ -239,7 +235,7 @@ class TrainingRun:
 
     def close(self) -> None:
         """End the runs and their processes for certain."""
-        self._launch = None
+        self._next = None
         if self._leaving is not None:
             self._leaving.close(self.kind.grace)
             self._take_place()
@@ -381,8 +377,7 @@ class TrainingRun:
         self._leaving, self._worker = self._worker, twin._worker
         self._leaving.stop()
         self.runs, self._named = self.runs + 1, False
-        for name in ("history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits",
-                     "in_force"):  # fmt: skip
+        for name in _TAKEN:
             setattr(self, name, getattr(twin, name))
         self.lesson, self.begun = None, True
         twin._worker, self.twin, self.differing = None, None, ()

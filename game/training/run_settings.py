@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import Field, asdict, dataclass, fields
 from functools import cache
+from operator import attrgetter
 from typing import Any, Final, Literal
 
 from ai.files.knobs import Knobs
@@ -17,6 +18,7 @@ from ai.training.config import Config, InForce
 from ai.training.experiments import sabotaged
 from ai.training.session import Session
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.worker import PATIENCE
 
 KnobKind = Literal["slider", "switch", "words"]
@@ -55,8 +57,7 @@ class KnobDescription:
 
     def read(self, config: Configuration) -> Any:
         """Return the knob's value in a configuration."""
-        value = getattr(config, self.field)
-        return getattr(value, self.part) if self.part else value
+        return attrgetter(self.name)(config)
 
     def write(self, config: Configuration, value: Any) -> Configuration:
         """Return the configuration with another value; raises ValueError for an invalid one."""
@@ -120,7 +121,7 @@ def _weight(part: Field[Any], live: bool) -> KnobDescription:
     stops = tuple(_rounded(share * default) for share in _SHARES) if default else _COSTS
     word, said = texts.REWARD_PARTS.get(part.name, (part.name, ""))
     advice = texts.KNOB_WEIGHTS.get(part.name, ())
-    return KnobDescription(WEIGHTS, part.name, word.capitalize(), said, REWARD, live, "slider", stops, advice)
+    return KnobDescription(WEIGHTS, part.name, capital(word), said, REWARD, live, "slider", stops, advice)
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:
@@ -196,13 +197,7 @@ class RunKind:
     def nearest(self, config: Configuration) -> Named:
         """Return the preset, or sabotage of one, that differs in the fewest fields; of equals, the preset."""
         every: list[Named] = [(base, sabotage) for sabotage in ("", *self.sabotages) for base in self.presets]
-        given = config.to_json()
-
-        def distance(named: Named) -> int:
-            other = self.config_of(named).to_json()
-            return sum(given[name] != other[name] for name in given)
-
-        return min(every, key=distance)
+        return min(every, key=lambda named: len(config.differences(self.config_of(named))))
 
     def said(self, named: Named) -> tuple[str, str]:
         """Return the label of a preset or a sabotage, and a sentence about it."""
@@ -214,8 +209,9 @@ class RunKind:
 class RunSettings:
     """Configuration and seed that the player can change.
 
-    `on_change` is called with the name and value of each setting that changes in effect; `on_restart` with the
-    configuration and seed of a new run, when changes are applied.
+    `on_change` is called with the name and value of each setting that changes in effect ("reward_weights.time" for a
+    part of the reward, "seed" for the seed); `on_restart` with the configuration and seed of a new run, when changes
+    are applied.
 
     Attributes:
         config, seed: in effect, without waiting changes.

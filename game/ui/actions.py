@@ -73,8 +73,9 @@ def hints_of(table: Table, controls: Controls) -> list[Hint]:
 
 
 def digit_actions(run: Callable[[int], Transition | None]) -> Iterable[Action]:
-    """Return an action for the key of each digit."""
-    return [Action(pygame.K_0 + digit, partial(run, digit)) for digit in range(10)]
+    """Return an action for the keys of each digit, on the keypad too."""
+    keys = [(key, digit) for digit in range(10) for key in (pygame.K_0 + digit, pygame.K_KP1 + (digit - 1) % 10)]
+    return [Action(key, partial(run, digit)) for key, digit in keys]
 
 
 def one_of_ten(

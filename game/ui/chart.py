@@ -72,7 +72,7 @@ class Chart:
         self.x_range: Limits = (0.0, 1.0)  # ends of the horizontal axis
         self._x_ends: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
         self._lines = self._make_grid(*(limits or (0.0, 1.0)))
-        self._shown = self._goal
+        self._shown = self.limits
         self.cursor: float | None = None  # an x, for all charts of a row
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
@@ -116,15 +116,11 @@ class Chart:
     @property
     def limits(self) -> Limits:
         """Lowest and highest value of the vertical axis once its easing ends."""
-        return self._goal
+        return self.fixed or (float(self._lines[0]), float(self._lines[-1]))
 
     def read(self, height: float) -> str:
         """Format the value at a height of the vertical axis, which for a `log` axis is a logarithm."""
         return self._read(self._value(height))
-
-    @property
-    def _goal(self) -> Limits:
-        return self.fixed or (float(self._lines[0]), float(self._lines[-1]))
 
     # Data
 
@@ -143,18 +139,13 @@ class Chart:
         first = not any(run.last() is not None for run in self.runs)
         self.runs, self.x_range, self._ticks, self.caption = runs, span, tuple(ticks), caption
         self._x_ends = tuple(dict.fromkeys((start, max(start, end))))
-        self._set_limits()
+        within = [run.within(span) for run in runs]
+        shown = plotting.robust_range(np.concatenate(within)) if within and not self.fixed else None
+        if shown is not None:
+            self._lines = plotting.steady_grid(shown, self._lines, self._make_grid)
         if first:
-            self._shown = self._goal
+            self._shown = self.limits
         self._stale = True
-
-    def _set_limits(self) -> None:
-        if self.fixed:
-            return
-        shown = [run.within(self.x_range) for run in self.runs]
-        span = plotting.robust_range(np.concatenate(shown)) if shown else None
-        if span is not None:
-            self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
 
     def mark(self, x: float | None, caption: str = "") -> None:
         """Put the marker at x: a vertical line with a caption and a dot on the current run's curve; None removes it."""
@@ -193,14 +184,14 @@ class Chart:
     @property
     def waiting(self) -> int:
         """Steps since the last drawing, if there is something new to draw; 0 if there is nothing, or it is too soon."""
-        moving = self._shown != self._goal
+        moving = self._shown != self.limits
         return self._rested if moving or (self._stale and self._rested >= _REST) else 0
 
     def update(self, at_once: bool = False, *, turn: bool = True) -> None:
         """Advance by 1/60 s: ease the limits, or jump `at_once`. On its `turn`, the next frame draws new numbers."""
         self._rested += 1
-        if self._shown != self._goal:
-            self._shown = self._goal if at_once else plotting.eased(self._shown, self._goal, _EASE)
+        if self._shown != self.limits:
+            self._shown = self.limits if at_once else plotting.eased(self._shown, self.limits, _EASE)
             self._stale = True
         if turn and self.waiting:
             self.renew()
@@ -228,7 +219,7 @@ class Chart:
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)
         self._paint_header(sheet, box)
         area = sheet.rect(*plot)
-        axes = Axes(self.x_range, self._shown, self._goal)
+        axes = Axes(self.x_range, self._shown, self.limits)
         if any(np.isfinite(run.within(self.x_range)).any() for run in self.runs):
             self._paint_grid(sheet, plot)
         else:

@@ -12,7 +12,7 @@ from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK
 from game.ui.chart import Chart
 from game.ui.plotting import Limits
-from game.ui.widget import OnPress, PointsManager, Widget
+from game.ui.widget import OnPress, Widget
 
 MOST: Final = 64.0  # times that the axis can be stretched
 STEP: Final = 1.25  # times for a notch of the wheel, or a press of + or -
@@ -32,7 +32,6 @@ class Zoom:
         self.reset()
 
     def reset(self) -> None:
-        """Show the whole axis."""
         self.factor, self._middle = 1.0, 1.0  # the middle in units of the axis; the end, if it is beyond that
 
     @property
@@ -130,7 +129,6 @@ class Charts:
             patient.renew()
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw all charts, the one with the tooltip last so that nothing covers it."""
         for chart in sorted(self.charts, key=lambda chart: chart.pointed):
             chart.draw(canvas)
 
@@ -142,16 +140,11 @@ class Scrubber(Widget):
     """
 
     def __init__(
-        self,
-        manager: PointsManager,
-        charts: Charts,
-        on_move: Callable[[float | int], None],
-        on_press: OnPress,
-        on_zoom: Callable[[int], None],
+        self, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress, on_zoom: Callable[[int], None]
     ) -> None:
         # For the arrows, its box is the first row: the virtual pointer over all charts is reached from there.
         first, *others = (chart.box for chart in charts.charts)
-        super().__init__(manager, first.unionall([box for box in others if box.top == first.top]), "")
+        super().__init__(first.unionall([box for box in others if box.top == first.top]), "")
         self._charts, self._on_move, self._on_press, self._on_zoom = charts, on_move, on_press, on_zoom
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:

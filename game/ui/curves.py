@@ -33,7 +33,7 @@ _TICK_SPACING: Final = 4.0  # points
 # Blue is the current run; the others differ from it and from each other in dashes, and in colour, for eyes of
 # every kind: neighbours in both, and no two of them are alike in both.
 _COLOURS: Final[tuple[Colour, ...]] = (
-    (236, 140, 190), (222, 214, 160), (144, 98, 244), (168, 182, 96), (204, 208, 220), (206, 118, 236),
+    (236, 140, 190), (222, 214, 160), (144, 98, 244), (168, 182, 96), (204, 208, 220), (206, 118, 236)
 )  # fmt: skip
 _DASHES: Final[tuple[tuple[float, ...], ...]] = ((7.0, 5.0), (2.0, 4.0), (10.0, 4.0, 2.0, 4.0), (16.0, 5.0))
 _OTHERS: Final = len(_COLOURS) * len(_DASHES)

@@ -116,20 +116,18 @@ class EntryRow(RowWidget):
     spells = True
 
     def __init__(
-        self,
-        manager: PointsManager,
-        text: str,
-        accept: Callable[[str], Transition | None],
-        cancel: OnPress,
-        limit: int,
-        fits: Fits,
+        self, text: str, accept: Callable[[str], Transition | None], cancel: OnPress, limit: int, fits: Fits
     ) -> None:
-        super().__init__(manager, NOWHERE, "")
-        self.line = TextLine(manager, text, limit, fits)
+        super().__init__(NOWHERE, "")
+        self._given = text, limit, fits
         self._accept, self._cancelled = accept, cancel
-        self._before = self.line.text
-        self._fresh = False
+        self._before, self._fresh = text, False
         self._lefts = [0.0]  # where each letter begins, and the last one ends, in points
+
+    def join(self, manager: PointsManager) -> None:
+        if not self._joined:
+            self.line = TextLine(manager, *self._given)
+        super().join(manager)
 
     def kill(self) -> None:
         self.line.kill()  # type: ignore[no-untyped-call]

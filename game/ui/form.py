@@ -1,4 +1,4 @@
-"""Form: the widgets of a screen and their focus, for mouse, keyboard and gamepad alike."""
+"""Form: the widgets of a screen and their focus, for mouse, keyboard and gamepad alike; and scenes made of one."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from typing import Final, TypeVar
 import pygame
 
 from game.core import texts
-from game.core.scene import Transition
+from game.core.scene import Pop, Scene, Transition
 from game.drawing.canvas import Canvas, moved
+from game.drawing.tokens import MARGIN, VIEW_SIZE
 from game.input.controls import Command, Controls, presses_main, translate
-from game.ui.actions import Action, Table, answering
+from game.ui.actions import Action, Table, answering, hints_of
 from game.ui.context import Context
-from game.ui.hints import Hint
+from game.ui.hints import Hint, HintRow
 from game.ui.widget import OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)
 Direction = tuple[int, int]
 UP, DOWN, LEFT, RIGHT = (0, -1), (0, 1), (-1, 0), (1, 0)
 _ARROWS: Final = {Command.UP: UP, Command.DOWN: DOWN, Command.LEFT: LEFT, Command.RIGHT: RIGHT}
+FOOT: Final = (MARGIN, VIEW_SIZE[1] - 40.0)  # where scenes on a page have their hints
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 # Steps a held direction waits before it repeats, and between repeats.
 _REPEAT_AFTER: Final = 24
@@ -27,7 +29,7 @@ _REPEAT_EVERY: Final = 4
 
 
 class Form:
-    """Widgets of a screen, one of them in focus; made with `form.manager` and added in the order of Tab.
+    """Widgets of a screen, one of them in focus; added in the order of Tab.
 
     A scene passes on `handle_event` and `update` and returns what they return; what a widget's callback
     returns comes out of one of the two. `on_back` answers Escape, or the pad's B. A scene that has commands of
@@ -57,7 +59,6 @@ class Form:
 
     @property
     def moves(self) -> Hint:
-        """Hint of the arrows, which move the focus."""
         return Hint(self.controls.arrows, texts.HINT_MOVE)
 
     @property
@@ -68,11 +69,9 @@ class Form:
         return self.confirms(texts.HINT_CHANGE)
 
     def confirms(self, hint: str) -> Action:
-        """Return the action that presses the focused widget."""
         return Action(Command.CONFIRM, self.confirm, hint)
 
     def goes_back(self, hint: str) -> Action:
-        """Return the action of Escape, or the pad's B."""
         return Action(Command.BACK, self._on_back, hint)
 
     @property
@@ -89,6 +88,7 @@ class Form:
         return self.widgets[self._index] if self.widgets else None
 
     def add(self, widget: W) -> W:
+        widget.join(self.manager)
         self.widgets.append(widget)
         return widget
 
@@ -101,6 +101,8 @@ class Form:
             if widget not in new:
                 widget.kill()  # type: ignore[no-untyped-call]
         self.widgets[place:place] = new
+        for widget in new:
+            widget.join(self.manager)
         if focused in self.widgets:
             self.focus(focused)
         else:
@@ -231,12 +233,54 @@ class Form:
             widget.ringed = not self._context.controls.mouse_in_use
 
 
+class FormScene(Scene):
+    """Scene with a form, whose keys, hints and clicks on hints all follow one table, `actions`.
+
+    Attributes:
+        form: the widgets.
+        takes_tab: whether Tab is a key for the actions, instead of moving the focus.
+
+    """
+
+    takes_tab = False
+
+    def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
+        super().__init__(context)
+        self.form = Form(context, on_back)
+
+    @property
+    def typing(self) -> bool:  # type: ignore[override]
+        """Whether the focused widget takes every key, as a text line does."""
+        return self.form.typing
+
+    def actions(self) -> Table:
+        return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_BACK)]
+
+    @property
+    def hints(self) -> list[Hint]:
+        return self.form.hints or hints_of(self.actions(), self.context.controls)
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002
+        return [HintRow(self.hints, FOOT)]
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        moves = tab(event) != 0 and not self.takes_tab
+        return self.form.handle_event(event, () if moves else self.actions())
+
+    def update(self) -> Transition | None:
+        return self.form.update()
+
+    def draw_hints(self, canvas: Canvas) -> None:
+        for row in self.hint_rows(canvas):
+            row.draw(canvas)
+
+
 class Part:
     """Part of a form whose widgets a panel of its own lays out; the form has them once they are added to it."""
 
     def __init__(self, form: Form) -> None:
         self._form, self.widgets = form, list[Widget]()
-        self.manager, self.controls, self.in_order = form.manager, form.controls, True
+        self.controls, self.in_order = form.controls, True
 
     @property
     def focused(self) -> Widget | None:
@@ -244,6 +288,7 @@ class Part:
         return focused if focused in self.widgets else None
 
     def add(self, widget: W) -> W:
+        widget.join(self._form.manager)
         self.widgets.append(widget)
         return widget
 

@@ -102,15 +102,20 @@ class HintRow:
         ]
 
 
-def hint_lines(hints: Sequence[Hint], canvas: Canvas, corner: Point, room: float) -> list[HintRow]:
-    """Return rows of hints no wider than `room`, the last of which begins at the corner at the lower left."""
+def split(hints: Sequence[Hint], canvas: Canvas, room: float) -> list[list[Hint]]:
+    """Return hints in lines no wider than `room`, in points."""
     lines: list[list[Hint]] = []
     for hint in hints:
-        if lines and HintRow([*lines[-1], hint], corner).width(canvas) <= room:
+        if lines and HintRow([*lines[-1], hint], (0, 0)).width(canvas) <= room:
             lines[-1].append(hint)
         else:
             lines.append([hint])
-    x, y = corner
+    return lines
+
+
+def hint_lines(hints: Sequence[Hint], canvas: Canvas, corner: Point, room: float) -> list[HintRow]:
+    """Return rows of hints no wider than `room`, the last of which begins at the corner at the lower left."""
+    (x, y), lines = corner, split(hints, canvas, room)
     return [HintRow(line, (x, y - 1.6 * _LINE * (len(lines) - number))) for number, line in enumerate(lines, 1)]
 
 

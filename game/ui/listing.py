@@ -11,7 +11,7 @@ import pygame
 
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
-from game.ui.widget import NOWHERE, PointsManager, RowWidget, mix
+from game.ui.widget import NOWHERE, RowWidget, mix
 
 if TYPE_CHECKING:
     from game.core.scene import Transition
@@ -31,7 +31,6 @@ class ListRow(RowWidget):
     The wheel, the arrows and Page Up and Down scroll; at either end, the arrows lead to the next widget.
 
     Args:
-        manager: the form's manager.
         rows: the rows.
         press: called with a row's number on Enter, a gamepad's A or a second click on it.
         empty: what stands there without rows.
@@ -48,7 +47,6 @@ class ListRow(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         rows: Sequence[Row],
         press: Callable[[int], Transition | None],
         empty: str = "",
@@ -62,7 +60,7 @@ class ListRow(RowWidget):
         size: float = TEXT,
         numbered: float = 0.0,
     ) -> None:
-        super().__init__(manager, NOWHERE, "")
+        super().__init__(NOWHERE, "")
         self._on_choose, self._on_press, self._empty = on_choose, press, empty
         self._columns, self._pitch, self._size, self._numbered = columns, pitch, size, numbered
         self._around, self._most, self.first = around, _ROWS, first
@@ -97,7 +95,6 @@ class ListRow(RowWidget):
         return self.box.right - (_BAR + _GAP if len(self.rows) > self.room else 0.0)
 
     def choose(self, index: int) -> None:
-        """Choose a row, and scroll it into view."""
         index = min(max(index, 0), len(self.rows) - 1)
         if self.rows and index != self.index:
             self.index = index
@@ -165,9 +162,8 @@ class ListRow(RowWidget):
         room = right - name
         before = math.inf
         for cell, column in zip(cells, self._columns, strict=False):
-            end = right - column
-            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True,
-                              room=before - column - _BETWEEN)  # fmt: skip
+            end, beside = right - column, before - column - _BETWEEN
+            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True, room=beside)
             before = column
             room = min(room, box.left - name - 24)
         colour = INK if chosen else mix(MUTE, INK, 0.35)

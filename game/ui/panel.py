@@ -20,7 +20,7 @@ from game.drawing.typeface import Weight
 from game.ui.entry import EntryRow
 from game.ui.listing import ListRow
 from game.ui.rows import ButtonRow, ChoiceRow, SliderRow, ToggleRow, Words, said
-from game.ui.widget import PointsManager, RowWidget, Widget
+from game.ui.widget import RowWidget, Widget
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
@@ -45,11 +45,11 @@ class Row:
     box: pygame.FRect = field(default_factory=lambda: pygame.FRect(0, 0, 0, 0))
 
 
-def _adding(kind: Callable[Concatenate[PointsManager, P], W]) -> Callable[Concatenate[Column, P], W]:
-    """Return a method that adds a widget of a kind, made of all that it takes but the manager."""
+def _adding(kind: Callable[P, W]) -> Callable[Concatenate[Column, P], W]:
+    """Return a method that makes a widget of a kind, and adds it."""
 
     def add(column: Column, /, *given: P.args, **more: P.kwargs) -> W:
-        return column.widget(kind(column.manager, *given, **more))
+        return column.widget(kind(*given, **more))
 
     return add
 
@@ -59,7 +59,7 @@ class Column:
 
     def __init__(self, form: Form | Part) -> None:
         self.rows: list[Row] = []
-        self._form, self._widgets, self.manager = form, list[Widget](), form.manager
+        self._form, self._widgets = form, list[Widget]()
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
@@ -136,7 +136,7 @@ class Column:
 
     def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        buttons = [self._form.add(ButtonRow(self._form.manager, label, press, size=size)) for label, press in words]
+        buttons = [self._form.add(ButtonRow(label, press, size=size)) for label, press in words]
         self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons
@@ -245,7 +245,7 @@ def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
         width = min(button.measured(cursor), cursor.width)
         if left > cursor.left and left + width > cursor.right:
             left, cursor.y = cursor.left, below
-        place = replace(cursor, left=left, width=width)
+        place = cursor.column(left, width)
         button.lay(place)
         left, below = left + width + _WORDS, max(below, place.y)
     cursor.y = below

@@ -38,11 +38,9 @@ class Playback:
 
     @property
     def word(self) -> str:
-        """The speed as it is written."""
         return _WORDS[self._clock.rate]
 
     def describe(self, column: Column, size: float = SMALL) -> ChoiceRow:
-        """Add the row of speeds, and return it."""
         words, now = [_WORDS[speed] for speed in self._speeds], self._speeds.index(self._clock.rate)
         self._row = column.choice(texts.WATCH_SPEED, words, now, self._choose, size)
         return self._row
@@ -83,7 +81,6 @@ class Playback:
         self.stopped = not self.stopped
 
     def step(self) -> None:
-        """Stop, and take one step."""
         self.stopped = True
         self._advance()
 

@@ -10,13 +10,14 @@ from typing import Final
 
 import pygame
 
+from game.core import texts
 from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.curves import run_style
 from game.ui.tooltip import draw_swatch
-from game.ui.widget import EASE, NOWHERE, OnPress, PointsManager, RowWidget, mix
+from game.ui.widget import EASE, NOWHERE, OnPress, RowWidget, mix
 
 Words = str | Callable[[], str]  # a function for words that change
 _SWITCH: Final = (32.0, 16.0)
@@ -33,12 +34,16 @@ def said(words: Words) -> str:
     return words if isinstance(words, str) else words()
 
 
+def percent(share: float) -> str:
+    """Return a share, 0 to 1, as it is written."""
+    return texts.SOUND_SHARE.format(percent=round(100 * share))
+
+
 class ButtonRow(RowWidget):
     """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus."""
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         press: OnPress,
         aside: Words = "",
@@ -48,23 +53,20 @@ class ButtonRow(RowWidget):
         weight: Weight = "regular",
         colour: Colour = MUTE,
     ) -> None:
-        super().__init__(manager, NOWHERE, label)
+        super().__init__(NOWHERE, label)
         self._on_press, self._size, self._weight, self._colour = press, size, weight, colour
         self._aside, self._figure = aside, figure
 
     def press(self) -> Transition | None:
         return self._on_press()
 
-    def tint(self) -> Colour:
-        return mix(self._colour, INK, self.warmth)
-
     def measured(self, cursor: Cursor) -> float:
         """Return the width of its words on one line, with something to spare."""
         return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
-        label, top = cursor.in_style(self._size, self.tint(), self._weight), cursor.y
-        wide, figure = min(label.measured(self.label), cursor.width), said(self._figure)
+        label = cursor.in_style(self._size, mix(self._colour, INK, self.warmth), self._weight)
+        top, wide, figure = cursor.y, min(label.measured(self.label), cursor.width), said(self._figure)
         label.text(self.label)
         if cursor.canvas and self.warmth * wide > 1:
             y = label.y - 0.05 * self._size + 2
@@ -101,8 +103,8 @@ class ButtonRow(RowWidget):
 class RunRow(ButtonRow):
     """Name of a run to press, after a piece of its line in a chart."""
 
-    def __init__(self, manager: PointsManager, name: str, style: int, press: OnPress) -> None:
-        super().__init__(manager, name, press, size=SMALL)
+    def __init__(self, name: str, style: int, press: OnPress) -> None:
+        super().__init__(name, press, size=SMALL)
         self.style = style
         self.pad = 3.0
 
@@ -118,10 +120,8 @@ class RunRow(ButtonRow):
 class ToggleRow(RowWidget):
     """Switch at the right end, its label and an explanation on the left."""
 
-    def __init__(
-        self, manager: PointsManager, label: str, value: bool, change: Callable[[bool], None], aside: str = ""
-    ) -> None:
-        super().__init__(manager, NOWHERE, label)
+    def __init__(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> None:
+        super().__init__(NOWHERE, label)
         self.value, self._on_change, self._aside = value, change, aside
         self._slid = float(value)
 
@@ -169,7 +169,6 @@ class SliderRow(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         value: float,
         limits: tuple[float, float],
@@ -180,7 +179,7 @@ class SliderRow(RowWidget):
         aside: str = "",
         ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
-        super().__init__(manager, NOWHERE, label)
+        super().__init__(NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
         self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
         self._track = (0.0, 1.0)
@@ -270,7 +269,6 @@ class ChoiceRow(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         options: Sequence[str],
         index: int,
@@ -280,7 +278,7 @@ class ChoiceRow(RowWidget):
         on_open: OnPress | None = None,
         all_word: str = "",
     ) -> None:
-        super().__init__(manager, NOWHERE, label)
+        super().__init__(NOWHERE, label)
         self.options, self.index, self._on_change, self._size = options, index, change, size
         self._on_open, self._all_word = on_open, all_word
         self._places: dict[int, pygame.FRect] = {}

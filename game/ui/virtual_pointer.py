@@ -12,7 +12,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NIGHT0
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.hints import Hint
-from game.ui.widget import PointsManager, RowWidget, Widget
+from game.ui.widget import RowWidget, Widget
 
 if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
@@ -72,7 +72,6 @@ class VirtualPointer(Widget):
     points outside the screen.
 
     Args:
-        manager: the form's manager.
         box: the area it can reach, in points.
         tell: receives the events.
         hold: hint for holding the button down; empty if that does nothing.
@@ -83,7 +82,6 @@ class VirtualPointer(Widget):
 
     def __init__(
         self,
-        manager: PointsManager,
         box: pygame.typing.RectLike,
         tell: Callable[[pygame.event.Event], object],
         *,
@@ -91,7 +89,7 @@ class VirtualPointer(Widget):
         leave: str = "",
         pace: float = 6.0,
     ) -> None:
-        super().__init__(manager, box, texts.POINTER)
+        super().__init__(box, texts.POINTER)
         self._hear, self._hold, self._leave, self._pace = tell, hold, leave or texts.POINTER_LEAVE, pace
         self.place = pygame.Vector2(self.box.center)
         self._held = HeldDirections()
@@ -191,7 +189,6 @@ class PictureRow(RowWidget, VirtualPointer):
     """Picture that is pointed at, by the mouse or a virtual pointer: `tell` gets their events, in points.
 
     Args:
-        manager: the form's manager.
         label: what it is called.
         height: of the picture in points, given the width.
         tell: receives the events: all motion, and each press within the picture until it is released.
@@ -208,7 +205,6 @@ class PictureRow(RowWidget, VirtualPointer):
 
     def __init__(
         self,
-        manager: PointsManager,
         label: str,
         height: Callable[[float], float],
         tell: Callable[[pygame.event.Event], object],
@@ -217,7 +213,7 @@ class PictureRow(RowWidget, VirtualPointer):
         square: bool = False,
         **more: Any,
     ) -> None:
-        super().__init__(manager, (0, 0, 1, 1), tell, **more)
+        super().__init__((0, 0, 1, 1), tell, **more)
         self.label, self._height, self._draw, self._square = label, height, draw, square
         self.picture = pygame.FRect(self.box)
 

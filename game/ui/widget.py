@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 import pygame
 from pygame_gui import UIManager
 from pygame_gui.core import UIElement
+from pygame_gui.core.layered_gui_group import GUISprite
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 from pygame_gui.core.utility import set_default_manager
 
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, MUTE, VIEW_SIZE, Colour
+from game.drawing.tokens import HUMAN, INK, VIEW_SIZE, Colour
 from game.input.controls import Controls
 from game.ui.hints import Hint
 
@@ -51,10 +52,6 @@ class PointsManager(UIManager):
             self.mouse_position = (int(event.pos[0]), int(event.pos[1]))
         return bool(super().process_events(event))
 
-    def calculate_scaled_mouse_position(self, position: tuple[float, float]) -> tuple[int, int]:
-        """Return the position unchanged, because it is in points already."""
-        return int(position[0]), int(position[1])
-
     def update(self, time_delta: float) -> None:
         """Advance the elements, for a text line repeats a held key.
 
@@ -82,22 +79,24 @@ class Widget(UIElement):
     spells = by_arrows = False
     follows_mouse = True
 
-    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
-        super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)
+    def __init__(self, box: pygame.typing.RectLike, label: str) -> None:
+        GUISprite.__init__(self)  # which has a place already before it joins a form
+        self.rect = self.relative_rect = pygame.Rect(box)
         self.label, self.help = label, ""
         self.focused = self.typing = self.ringed = self.held = False
         self.warmth = 0.0
         self.outcome: Transition | None = None
+        self._joined = False
+
+    def join(self, manager: PointsManager) -> None:
+        """Become one of a form's elements, once, when it is added there."""
+        if not self._joined:
+            self._joined = True
+            super().__init__(self.rect, manager, None, starting_height=1, layer_thickness=1)
 
     @property
     def box(self) -> pygame.Rect:
         return pygame.Rect(self.rect)
-
-    @property
-    def mouse_x(self) -> float | None:
-        """The mouse's x in points; None while keys or a gamepad are in use."""
-        x = float(self.ui_manager.get_mouse_position()[0])
-        return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
 
     def press(self) -> Transition | None:
         return None
@@ -150,10 +149,6 @@ class Widget(UIElement):
         canvas.cover(canvas.rect(*self.box))
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
-
-    def tint(self) -> Colour:
-        """Return the label's colour: muted, or ink when in focus."""
-        return mix(MUTE, INK, self.warmth)
 
 
 class RowWidget(Widget):

@@ -23,16 +23,16 @@ _REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, an
 _FADE: Final = 3.0  # metres over which a pad out of reach stops counting
 
 
-def framed(env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> CameraTarget:
+def framed(env: LanderEnv, clear: ClearArea = ALL) -> CameraTarget:
     """Return the closest shot that fits the craft, the way ahead of it, and its pads into the clear screen."""
-    x, y = env.position[slot].tolist()
-    ahead_x, ahead_y = (env.position[slot] + _LEAD * env.velocity[slot]).tolist()
+    x, y = env.position[0].tolist()
+    ahead_x, ahead_y = (env.position[0] + _LEAD * env.velocity[0]).tolist()
     left, right = min(x, ahead_x) - _AROUND, max(x, ahead_x) + _AROUND
-    for edges, weight in _pads(env, slot, x, y):
+    for edges, weight in _pads(env, x, y):
         left += weight * (min(left, edges[0] - _BESIDE) - left)
         right += weight * (max(right, edges[1] + _BESIDE) - right)
     top = max(y, ahead_y) + _AROUND
-    for edge in near_edges(env, slot):  # an edge of the area comes into view as the craft comes near
+    for edge in near_edges(env):  # an edge of the area comes into view as the craft comes near
         near = min(1.0, 1.6 * (1 - edge.away / NEAR))
         weight = near * near * (3 - 2 * near)  # eases in and out
         left += weight * (min(left, edge.place - _AROUND) - left) * (edge.side == "left")
@@ -49,18 +49,18 @@ def whole(path: Doubles) -> CameraTarget:
     return CameraTarget(min(max(0.0, right - half), left + half), zoom).on_land()
 
 
-def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> None:
+def follow(camera: Camera, env: LanderEnv, clear: ClearArea = ALL) -> None:
     """Move a camera with a flight, for one step."""
-    x, y = env.position[slot].tolist()
-    camera.follow(framed(env, slot, clear), (x, y))
+    x, y = env.position[0].tolist()
+    camera.follow(framed(env, clear), (x, y))
 
 
-def _pads(env: LanderEnv, slot: int, x: float, y: float) -> list[tuple[tuple[float, float], float]]:
+def _pads(env: LanderEnv, x: float, y: float) -> list[tuple[tuple[float, float], float]]:
     """Return both edges of every pad and its weight in the framing, 0 to 1.
 
     A single pad has weight 1, as has the goal of a leg, which is its first pad.
     """
-    shift = float(env.pad_shift[slot])
+    shift = float(env.pad_shift[0])
     pads = env.ground.pads
     near, wider = _REACH
     rows = []

@@ -78,19 +78,15 @@ def _both(*facets: Facet) -> list[Facet]:
 def _legs() -> list[Facet]:
     x, y = FOOT_CENTRE
     half, rise = FOOT_SIZE[0] / 2, FOOT_SIZE[1] / 2
-    dish = ((x - half, y - rise), (x + half, y - rise), (x + half, y - 0.01), (x + 0.09, y + rise),
-            (x - 0.09, y + rise), (x - half, y - 0.01))  # fmt: skip
+    lower, upper = ((x - half, y - rise), (x + half, y - rise)), ((x + 0.09, y + rise), (x - 0.09, y + rise))
+    dish = (*lower, (x + half, y - 0.01), *upper, (x - half, y - 0.01))
     return _both(
         Facet(((0.40, -0.44), (x - 0.02, y + 0.20)), _DARK, (0.2, -0.6, 0.7), 0.045),
         Facet(((0.66, -0.30), (x - 0.01, y + 0.16)), _STEEL, (0.3, -0.5, 0.8), 0.045),
         Facet(((0.60, 0.02), (x, y + rise)), _SILVER, (0.75, 0.3, 0.6), 0.066),
         Facet(((0.60, 0.02), (x - 0.115, y + 0.35)), _GOLD, (0.7, 0.3, 0.6), 0.085),
         Facet(dish, _STEEL, (0.0, 0.35, 0.9)),
-        Facet(
-            ((x - half, y - 0.012), (x - 0.09, y + rise), (x + 0.09, y + rise), (x + half, y - 0.012)),
-            _SILVER,
-            (0.15, 0.8, 0.55),
-        ),
+        Facet(((x - half, y - 0.012), *upper[::-1], (x + half, y - 0.012)), _SILVER, (0.15, 0.8, 0.55)),
     )
 
 
@@ -210,19 +206,9 @@ def _packed(pixels_per_metre: float, degrees: int) -> pygame.Surface:
     return picture
 
 
+@lru_cache(maxsize=256)  # a seventh of a megabyte each, and more in a large window
 def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str = LANDER) -> pygame.Surface:
     """Return a picture at a size and angle, its middle moved right and down by 0 or 1 `halves` of a pixel."""
-    paint = _paint if pixels_per_metre < LARGE else _paint_large
-    return paint(pixels_per_metre, degrees, halves, image)
-
-
-@lru_cache(maxsize=192)  # a seventh of a megabyte each, and more in a large window
-def _paint_large(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str) -> pygame.Surface:
-    return _paint.__wrapped__(pixels_per_metre, degrees, halves, image)
-
-
-@lru_cache(maxsize=512)  # a twentieth of one at most: in an hour of play, all that fit in are there
-def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str) -> pygame.Surface:
     finish = PICTURES[image]
     half = math.ceil(REACH * pixels_per_metre) + 2
     side = 2 * half + 1
@@ -250,13 +236,8 @@ def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image
 def _strut(sheet: pygame.Surface, colour: Colour, start: Corner, end: Corner, width: float) -> None:
     along = math.hypot(end[0] - start[0], end[1] - start[1]) or 1.0
     x, y = (end[1] - start[1]) / along * width / 2, (start[0] - end[0]) / along * width / 2
-    corners = [
-        (start[0] + x, start[1] + y),
-        (end[0] + x, end[1] + y),
-        (end[0] - x, end[1] - y),
-        (start[0] - x, start[1] - y),
-    ]
-    pygame.draw.polygon(sheet, colour, corners)
+    one, other = [(start[0] + x, start[1] + y), (end[0] + x, end[1] + y)], [(end[0] - x, end[1] - y)]
+    pygame.draw.polygon(sheet, colour, [*one, *other, (start[0] - x, start[1] - y)])
 
 
 def _lit(turn: float, share: float) -> list[Colour]:

@@ -20,6 +20,7 @@ from game.flight.forecast import HEIGHT_STEP, REACH, heights
 from game.world.camera import View
 
 _LEVELS: Final = 8
+_Range = tuple[float, float]
 
 
 class ParticleKind(IntEnum):
@@ -72,14 +73,8 @@ class Relief:
     def deck(self, x: float) -> tuple[float, float] | None:
         """Return the edges of the pad under x, or None where there is none."""
         shift = float(self._env.pad_shift[0])
-        return next(
-            (
-                (pad.left + shift, pad.right + shift)
-                for pad in self._env.ground.pads
-                if pad.left <= x - shift <= pad.right
-            ),
-            None,
-        )
+        under = [pad for pad in self._env.ground.pads if pad.left <= x - shift <= pad.right]
+        return (under[0].left + shift, under[0].right + shift) if under else None
 
 
 class Particles:
@@ -162,8 +157,7 @@ class Particles:
             speed = self._rng.uniform(6.5, 11.0, (count, 1))
             push = carried + direction * speed + aside * self._rng.normal(0.0, 0.55, (count, 1))
             start = nozzle + direction * self._rng.uniform(0.2, 0.9, (count, 1))
-            life = self._rng.uniform(0.14, 0.34, count)
-            self.add(kind, start, push, life, self._rng.uniform(0.03, 0.07, count))
+            self._emit(kind, start, push, (0.14, 0.34), (0.03, 0.07))
 
     def blow(self, x: float, strength: float) -> None:
         """Blow dust outwards along the ground from where a jet meets it; `strength` 0 to 1.
@@ -186,31 +180,19 @@ class Particles:
             speed = self._rng.uniform(*fast, number) * (0.4 + 0.6 * strength)
             rise = speed * steep * self._rng.uniform(0.2, 1.0, number)
             place = np.stack([start, self._relief.height(start) + 0.05], 1)
-            self.add(
-                kind,
-                place,
-                np.stack([side * speed, rise], 1),
-                self._rng.uniform(*life, number),
-                self._rng.uniform(*size, number),
-            )
+            self._emit(kind, place, np.stack([side * speed, rise], 1), life, size)
 
     def raise_dust(self, foot: tuple[float, float], strength: float) -> None:
         """Raise a foot's dust, and sparks where it comes down hard; `strength` 0 to 1."""
+        sparks = int(22 * max(0.0, strength - 0.35))
         for kind, count, fast, rise, life, size in (
             (ParticleKind.DUST, int(4 + 9 * strength), (0.3, 1.8), (0.1, 0.8), (0.5, 1.2), (0.06, 0.14)),
-            (
-                ParticleKind.SPARK,
-                int(22 * max(0.0, strength - 0.35)),
-                (0.5, 4.5),
-                (0.3, 2.4),
-                (0.25, 0.8),
-                (0.02, 0.045),
-            ),
+            (ParticleKind.SPARK, sparks, (0.5, 4.5), (0.3, 2.4), (0.25, 0.8), (0.02, 0.045)),
         ):
             side = self._rng.choice((-1.0, 1.0), count)
             start = np.stack([foot[0] + side * self._rng.uniform(0.0, 0.25, count), np.full(count, foot[1] + 0.04)], 1)
             speed = np.stack([side * self._rng.uniform(*fast, count), self._rng.uniform(*rise, count)], 1)
-            self.add(kind, start, speed, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
+            self._emit(kind, start, speed, life, size)
 
     def burst(self, position: Doubles, velocity: Doubles, share: float = 1.0) -> None:
         """Emit the debris of a crash: sparks, fragments and a ring of dust, or a share of them."""
@@ -225,7 +207,11 @@ class Particles:
             fast = speed * self._rng.uniform(0.15, 1.0, count)
             push = np.stack([np.cos(turn), np.sin(turn)], 1) * fast[:, None] + 0.35 * velocity * (1, -0.4)
             start = position + self._rng.uniform(-0.5, 0.5, (count, 2)) * (1.0, 0.7)
-            self.add(kind, start, push, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
+            self._emit(kind, start, push, life, size)
+
+    def _emit(self, kind: ParticleKind, position: Doubles, velocity: Doubles, life: _Range, size: _Range) -> None:
+        count = len(position)
+        self.add(kind, position, velocity, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
 
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
         """Draw the particles, `alpha` of the way from the last step to this one."""
@@ -241,23 +227,15 @@ class Particles:
         radius = (radius + step // 2) // step * step
         level = np.minimum(level, _FADING[kind])
         corner = np.rint(place).astype(np.intp) - radius[:, None]
-        turn = np.where(
-            kind == ParticleKind.SHARD, (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16, 0
-        )
+        turned = (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16
+        turn = np.where(kind == ParticleKind.SHARD, turned, 0)
         sprites = map(_sprite, kind.tolist(), radius.tolist(), level.tolist(), turn.tolist(), repeat(self._dust))
         drawn = list(zip(sprites, corner.tolist(), strict=True))
         shines = (kind >= ParticleKind.SPARK).tolist()
         surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if not shining])
         surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if shining], pygame.BLEND_RGB_ADD)
 
-    def add(
-        self,
-        kind: ParticleKind,
-        position: Doubles,
-        velocity: Doubles,
-        life: Doubles,
-        size: Doubles,
-    ) -> None:
+    def add(self, kind: ParticleKind, position: Doubles, velocity: Doubles, life: Doubles, size: Doubles) -> None:
         """Add particles (count, 2) that live for `life` seconds (count,), with radii of `size` metres (count,)."""
         if not len(position):
             return

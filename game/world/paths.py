@@ -21,7 +21,7 @@ from game.flight.foresight import SixFutures
 from game.flight.networks import Policy
 from game.world.camera import View
 
-_SPACING: Final = 0.62  # metres between dots
+_SPACING, _CLEAR = 0.62, 1.6  # metres between dots, and before the first one
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
 _FINEST: Final = 40  # points of a trail that is done: it is smooth, and there are many to draw
 _STRETCH: Final = 12  # points of a trail drawn in one colour
@@ -31,15 +31,13 @@ Coasting = tuple[float, bool]
 _FADE: Final = 0.6  # below the words at the head, in their height: where a line fades in
 
 
-def draw_dotted(
-    canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6, head: float = 0.0
-) -> None:
-    """Draw a path (k, 2) as dots that fade along the way, from `start` metres on, below the uppermost `head` points."""
+def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, head: float = 0.0) -> None:
+    """Draw a path (k, 2) as dots that fade along the way, clear of the craft, and below the uppermost `head` points."""
     head += canvas.view.top
     if len(path) < 2:
         return
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    marks = np.arange(start, lengths[-1], _SPACING)
+    marks = np.arange(_CLEAR, lengths[-1], _SPACING)
     if not len(marks):
         return
     places = np.stack([np.interp(marks, lengths, path[:, k]) for k in range(2)], axis=1)

@@ -34,13 +34,14 @@ class Scenery:
     generator of its own: a flight never depends on what is drawn.
 
     Attributes:
+        calm: whether motion is reduced.
         clear: the part of the screen in which to show the flight from now on.
         stage: the craft's flames, its dust and the wreck of a crash.
 
     """
 
     def __init__(self, flight: Flight, reduced_motion: bool, clear: ClearArea = framing.ALL) -> None:
-        self._flight, self._calm, self.clear = flight, reduced_motion, clear
+        self._flight, self.calm, self.clear = flight, reduced_motion, clear
         self._look = look_of(flight.recording.mission)
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
@@ -50,15 +51,10 @@ class Scenery:
         self._camera = Camera()
         self.cut()
 
-    @property
-    def calm(self) -> bool:
-        """Whether motion is reduced; may change during a flight."""
-        return self._calm
-
-    @calm.setter
-    def calm(self, calm: bool) -> None:
-        if calm != self._calm:
-            self._calm = self.stage.calm = self._callouts.calm = calm
+    def set_calm(self, calm: bool) -> None:
+        """Set whether motion is reduced; that may change during a flight."""
+        if calm != self.calm:
+            self.calm = self.stage.calm = self._callouts.calm = calm
             self._camera = Camera()
             self.cut()
 
@@ -71,11 +67,11 @@ class Scenery:
     def cut(self) -> None:
         """Cut the camera to the flight. With reduced motion, zoom out, and stay out, only where text would hide it."""
         shot = framing.framed(self._flight.env, clear=self.clear)
-        if not self._calm:
+        if not self.calm:
             self._camera.cut(shot)
         elif shot.zoom < self._camera.shot.zoom:
             self._camera.cut(CameraTarget(zoom=shot.zoom))
-        if self._calm:
+        if self.calm:
             self._keep_in_view()
 
     def _keep_in_view(self) -> None:
@@ -97,7 +93,7 @@ class Scenery:
 
     def animate(self) -> None:
         """Advance by 1/60 s all that moves whether or not anything flies."""
-        if not self._calm:
+        if not self.calm:
             self._time += STEP
 
     def follow(self, ended: bool, shot: CameraTarget | None = None) -> None:
@@ -105,8 +101,8 @@ class Scenery:
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
         self._callouts.follow()
-        self._factors.follow(self._calm)
-        if self._calm:
+        self._factors.follow(self.calm)
+        if self.calm:
             self._keep_in_view()
             return
         self._camera.shake(self.stage.jolt)
@@ -121,17 +117,17 @@ class Scenery:
 
     def shot_of(self, path: Doubles) -> CameraTarget:
         """Return a shot of a whole path (k, 2); with reduced motion, the resting shot."""
-        return self._camera.shot if self._calm else framing.whole(path)
+        return self._camera.shot if self.calm else framing.whole(path)
 
     def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
         """Fill the view with sky and land; `earth` is where the Earth stands, in points."""
         env = self._flight.env
-        moon = landscape(canvas.surface.get_size(), self._calm, self._look)
+        moon = landscape(canvas.surface.get_size(), self.calm, self._look)
         moon.draw(canvas, self._camera, self._time, alpha, earth)
         view = self.view(canvas.scale, alpha).filling(canvas)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
         draw_edges(canvas, view, env, canvas.palette.warn)
-        if env.conditions.pushes and not self._calm:
+        if env.conditions.pushes and not self.calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
@@ -146,7 +142,6 @@ class Scenery:
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
-        self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
         self.stage.draw_dust(canvas, view, alpha)
         shown = self.stage.pose_after(alpha)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 from typing import Final
@@ -19,7 +20,7 @@ from game.drawing.tokens import HUMAN, NET, Colour
 from game.flight.forecast import surface_height
 from game.world import lander as art
 from game.world.camera import View
-from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
+from game.world.craft import STAND, draw_craft, draw_fires, foot_place, scaling, shaded, stand
 from game.world.flame import begin_flames
 from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles, Relief
@@ -31,7 +32,6 @@ _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
-_SAGS: Final = (0.35, 0.30)  # metres and radians by which an upright wreck sinks onto its hull
 _WRECK_DETAIL: Final = 0.6  # resolution of a wreck, of what the closest view would need
 
 
@@ -137,11 +137,8 @@ class Stage:
         if env.outcome[0] != Outcome.CRASHED:
             return None
         if env.intact[0]:
-            x, y = env.position[0].tolist()
             strength = min(1.0, float(env.impact[0, 0]) / env.limits.touch_speed)
-            self.jolt = _JOLT * 0.55 * strength**1.5
-            for side in (-1, 1):
-                self.particles.raise_dust(foot_place(x, y, float(env.angle[0]), side), strength)
+            self._thud((0, 1), strength)
             return Wreck(env, 0, self._rng)
         self.jolt = min(_JOLT, 4.0 + 1.4 * float(env.impact[0, :2].max()))
         return None if self.calm else Wreck(env, 0, self._rng)
@@ -161,14 +158,16 @@ class Stage:
 
     def _touch(self) -> None:
         """Raise dust for each foot that comes down, more for a harder touchdown."""
-        env = self._env
-        down = env.contacts[0]
-        (x, y), angle = env.position[0].tolist(), float(env.angle[0])
+        env, down = self._env, self._env.contacts[0]
         strength = min(1.0, max(0.0, self._fall) / env.limits.touch_speed)
-        for foot in np.flatnonzero(down & ~self._down):
-            self.particles.raise_dust(foot_place(x, y, angle, 2 * int(foot) - 1), strength)
-            self.jolt = max(self.jolt, _JOLT * 0.55 * strength**1.5)
+        self._thud(np.flatnonzero(down & ~self._down).tolist(), strength)
         self._down, self._fall = down.copy(), -float(env.velocity[0, 1])
+
+    def _thud(self, feet: Iterable[int], strength: float) -> None:
+        (x, y), angle = self._env.position[0].tolist(), float(self._env.angle[0])
+        for foot in feet:
+            self.particles.raise_dust(foot_place(x, y, angle, 2 * foot - 1), strength)
+            self.jolt = max(self.jolt, _JOLT * 0.55 * strength**1.5)
 
     # One lander in full
 
@@ -190,20 +189,15 @@ class Stage:
         self._draw_ground_light(canvas, view, x, y, angle, slot)
         floor = view.pixel(x, surface_height(self._env, x))[1] + 2
         if sprite.image == art.WRECK:
-            self._draw_wreck(canvas, view, sprite, pose, slot)
+            self._draw_wreck(canvas, view, sprite, pose)
         else:
-            draw_craft(
-                canvas, view, sprite.image, pose, self.thrust[slot], float(self.blue[slot]), self._flicker,
-                art.share(sprite), floor, self._light,
-            )  # fmt: skip
+            fire = self.thrust[slot], float(self.blue[slot]), self._flicker
+            draw_craft(canvas, view, sprite.image, pose, *fire, art.share(sprite), floor, self._light)
         self._draw_flash(canvas, view, x, y, slot)
 
-    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
-        """Draw the dark wreck of a crash; one that does not tumble sags to the side of its broken leg."""
+    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles) -> None:
+        """Draw the dark wreck of a crash."""
         x, y, angle = pose.tolist()
-        if self._after is None:
-            sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
-            y, angle = y - _SAGS[0] * sag * max(0.0, math.cos(angle)), angle - _SAGS[1] * sag
         size = art.share(sprite)
         middle = view.pixel(*stand(x, y, angle, size))
         # A new picture for each degree that it tumbles, none of them seen from as near as a craft in flight.
@@ -217,10 +211,6 @@ class Stage:
     def draw_fires(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
         """Draw the flames of those whose main engine burns."""
         draw_fires(canvas, view, poses[shown & (self.thrust[:, 0] > 0.25)], self._flicker, size)
-
-    def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
-        """Draw the landers themselves."""
-        draw_crowd(canvas, view, poses[shown], size)
 
     def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw dust, sparks and fragments."""
@@ -240,9 +230,8 @@ class Stage:
             under = surface_height(self._env, foot_x)
             near = round(8 * max(0.0, 1 - max(0.0, foot_y - under) / 0.6))
             if near:
-                spot = pygame.transform.smoothscale(
-                    _shade(near), (2 * round(0.34 * metre), 2 * max(2, round(0.075 * metre)))
-                )
+                size = (2 * round(0.34 * metre), 2 * max(2, round(0.075 * metre)))
+                spot = pygame.transform.smoothscale(_shade(near), size)
                 _blit_middle(canvas, spot, view, (foot_x, under + 0.02))
 
     def _draw_ground_light(self, canvas: Canvas, view: View, x: float, y: float, angle: float, slot: int) -> None:
@@ -256,7 +245,7 @@ class Stage:
             colour = mix(HUMAN, NET, round(float(self.blue[slot]) * 4) / 4)
             metre = view.pixels_per_metre
             size = (2 * round((2.0 + 0.25 * reach) * metre), 2 * round(0.42 * metre))
-            pool = pygame.transform.smoothscale(light_pool(level, colour), size)
+            pool = pygame.transform.smoothscale(_light_pool(level, colour), size)
             _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
@@ -287,12 +276,12 @@ def _shade(level: int) -> pygame.Surface:
 
 
 @lru_cache(maxsize=128)
-def light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
+def _light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
     """Return a disc of light, to be squeezed flat and added; `level` is in 1/12."""
     pool = _white_pool().copy()
     pool.fill([round(part * min(level, 12) / 12) for part in colour], special_flags=pygame.BLEND_RGB_MULT)
     if level > 12:
-        pool.blit(light_pool(level - 12, colour), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
+        pool.blit(_light_pool(level - 12, colour), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
     return pool
 
 

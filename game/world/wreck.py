@@ -17,10 +17,8 @@ _STILL: Final = 0.05  # m/s and rad/s
 _SPIN: Final = 0.6  # rad/s for every m/s of the blow, at most
 _HOP: Final = 0.12  # share of the blow that throws it up again
 _TUMBLES: Final[dict[str, Any]] = {"restitution": 0.25, "friction": 0.7}
-_STAYS: Final[dict[str, Any]] = {
-    "restitution": 0.0,
-    "friction": 1.6,
-}  # feet dig in: it stays where it came down, on a slope too
+# Feet dig in: it stays where it came down, on a slope too.
+_STAYS: Final[dict[str, Any]] = {"restitution": 0.0, "friction": 1.6}
 
 
 class Wreck:
@@ -42,10 +40,9 @@ class Wreck:
         feet = [(-x, y), (x, y)] if whole else [(-x, y)]  # without the other leg it comes to lie on its hull
         shapes = [Polygon(HULL), *(Polygon.box(*FOOT_SIZE, foot) for foot in feet)]
         blow = 0.0 if whole else float(env.impact[slot, :2].max())
-        self._body = self._world.add(
-            shapes, env.position[slot], float(env.angle[slot]), mass=params.mass, inertia=params.inertia,
-            centre_of_mass=(0.0, 0.0), angular_drag=4.0 if whole else 0.3, **surface,
-        )  # fmt: skip
+        physics = {"mass": params.mass, "inertia": params.inertia, "angular_drag": 4.0 if whole else 0.3, **surface}
+        start = env.position[slot], float(env.angle[slot])
+        self._body = self._world.add(shapes, *start, centre_of_mass=(0.0, 0.0), **physics)
         self.sprite = Sprite(self._body, LANDER if whole else WRECK, SIZE)
         for pad in env.ground.build(self._world, **surface):
             pad.position = pad.position + np.array([float(env.pad_shift[slot]), 0.0])

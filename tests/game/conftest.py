@@ -1,5 +1,6 @@
 """The game without a window: SDL draws into memory, and a clock of our own ticks 1/60 s a frame."""
 
+import gc
 import os
 
 os.environ["SDL_VIDEODRIVER"] = "dummy"
@@ -13,6 +14,7 @@ import pygame
 import pytest
 
 from ai.lander.pilots import ScriptedPilot
+from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
 from game.digits import kept
 from game.drawing import typeface
@@ -26,6 +28,13 @@ pytest.register_assert_rewrite("tests.game.tour.checkers", "tests.game.tour.walk
 pygame.font.init()  # as long as the tests run, in whatever order
 
 
+@pytest.fixture(autouse=True, scope="module")
+def small_heap() -> Iterator[None]:
+    """Keep what tests leave out of later collections: each game that is closed or left collects once."""
+    yield
+    gc.freeze()
+
+
 @pytest.fixture(autouse=True)
 def networks_unread() -> None:
     """Forget networks that were read: a test may have put other numbers into them."""
@@ -34,10 +43,13 @@ def networks_unread() -> None:
 
 
 @pytest.fixture(autouse=True)
-def usual_text_size() -> Iterator[None]:
-    """Leave text as large as it was found: its size is the process's, and the last game may have made it larger."""
+def usual_text() -> Iterator[None]:
+    """Leave text as large as it was found, and nothing that was written in another language: both are the process's."""
+    read = texts.MENU
     yield
     typeface.grow(1.0)
+    if texts.MENU is not read:
+        typeface.forget()
 
 
 @pytest.fixture

@@ -24,6 +24,7 @@ MOST = 12
 def test_a_key_passes_the_files_that_the_map_names_and_no_others(open_game: Callable[..., Driver]):
     driver = open_game(lambda context: scene_of(Route("play", options={"seed": 12}), context))
     driver.frames(2)
+    driver.unseen = True
     driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0)
     seen = files_passed(lambda: driver.skip(2))
     env = driver.top.flight.env

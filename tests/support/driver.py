@@ -84,20 +84,23 @@ class Driver:
             self.skip()
             time.sleep(0.005 if active_children() else 0.001)  # a process needs the time, a thread a little
 
-    def post(self, event_type: int, **values: Any) -> bool:
+    def post(self, event_type: int, *, drawn: bool = True, **values: Any) -> bool:
+        """Let an event come in with a frame."""
         pygame.event.post(pygame.event.Event(event_type, values))
-        return self.frames(1)
+        return self._play(drawn=drawn)
 
-    def key(self, key: int, mod: int = 0) -> bool:
-        self.post(pygame.KEYDOWN, key=key, mod=mod, unicode="", scancode=0)
-        return self.post(pygame.KEYUP, key=key, mod=mod, unicode="", scancode=0)
+    def key(self, key: int, mod: int = 0, *, drawn: bool = True) -> bool:
+        """Press a key, and let go of it in the next frame, which is drawn."""
+        self.post(pygame.KEYDOWN, drawn=False, key=key, mod=mod, unicode="", scancode=0)
+        return self.post(pygame.KEYUP, drawn=drawn, key=key, mod=mod, unicode="", scancode=0)
 
     def keys(self, *keys: int) -> None:
-        for key in keys:
-            self.key(key)
+        """Press keys one after another; the last frame is drawn."""
+        for left, key in zip(reversed(range(len(keys))), keys, strict=True):
+            self.key(key, drawn=not left)
 
     def button(self, button: int, pad: int = 0) -> None:
-        self.post(pygame.CONTROLLERBUTTONDOWN, instance_id=pad, button=button)
+        self.post(pygame.CONTROLLERBUTTONDOWN, drawn=False, instance_id=pad, button=button)
         self.post(pygame.CONTROLLERBUTTONUP, instance_id=pad, button=button)
 
     def axis(self, axis: int, value: int, pad: int = 0) -> None:
@@ -113,7 +116,7 @@ class Driver:
 
     def click(self, points: tuple[float, float]) -> None:
         self.move(points)
-        self.post(pygame.MOUSEBUTTONDOWN, pos=self.to_window(points), button=1)
+        self.post(pygame.MOUSEBUTTONDOWN, drawn=False, pos=self.to_window(points), button=1)
         self.post(pygame.MOUSEBUTTONUP, pos=self.to_window(points), button=1)
 
     def saved(self) -> dict[str, Any]:

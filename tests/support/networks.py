@@ -2,7 +2,7 @@
 
 from game.drawing.canvas import Point
 from game.explain.network_view import NetworkView
-from game.scenes.train.picking import Link, part_at
+from game.scenes.train.editing import Link, part_at
 
 
 def on_a_link(view: NetworkView, layer: int = 0) -> Point:

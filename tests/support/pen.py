@@ -16,9 +16,14 @@ def strokes(digit: int, style: int = 0, height: float = 0.6, at: tuple[float, fl
     return [np.array(stroke) * (0.7 * height, height) + at for stroke in TEMPLATES[digit][style]]
 
 
+def pad_of(driver: Driver) -> pygame.Rect:
+    """The pad of the scene on top, in the window's pixels."""
+    return driver.top.context.reading().rect(*driver.top.pad.rect)
+
+
 def draw(driver: Driver, drawn: list[np.ndarray]) -> None:
     """Draw on the pad of Digits, all of a stroke in one frame."""
-    rect = driver.top.canvas_rect
+    rect = pad_of(driver)
     for stroke in drawn:
         points = stroke * rect.size + rect.topleft
         way = np.linspace(0, len(points) - 1, 60)

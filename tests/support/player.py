@@ -29,13 +29,13 @@ class Player(Driver):
 
     def press(self, *names: str) -> None:
         for name in names:
-            self.hold(name, down=True)
+            self.hold(name, down=True, drawn=False)
             self.hold(name, down=False)
 
-    def hold(self, name: str, *, down: bool) -> None:
+    def hold(self, name: str, *, down: bool, drawn: bool = True) -> None:
         """Press something, or let go of it."""
         self._tell(name, down=down)
-        self.frames(1)
+        self._play(drawn=drawn)
 
     def _tell(self, name: str, *, down: bool) -> None:
         if self.device == "keys":
@@ -101,6 +101,6 @@ class Player(Driver):
             for name in held ^ wanted:
                 self._tell(name, down=name in wanted)
             held = wanted
-            self.frames(1)
+            self.skip(1)
         for name in held:
             self.hold(name, down=False)

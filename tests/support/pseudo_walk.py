@@ -53,7 +53,7 @@ from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.networks import on_a_link
-from tests.support.pen import SEVEN, stroke
+from tests.support.pen import SEVEN, pad_of, stroke
 from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
@@ -141,7 +141,7 @@ def learn(driver: Driver, run: TrainingRun, config: object, enough: Callable[[],
 
 def drawn(driver: Driver) -> None:
     """Draw a seven, and have it read."""
-    rect = driver.top.canvas_rect
+    rect = pad_of(driver)
     stroke(driver, [(rect.x + x * rect.w, rect.y + y * rect.h) for x, y in ((0.3, 0.2), (0.7, 0.2), (0.5, 0.8))])
     driver.frames(30)
 

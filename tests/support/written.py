@@ -92,7 +92,8 @@ class Written:
                 within = pygame.FRect((0, 0), size) if note.within == laid.view else note.within
                 if (ink := seen(canvas, note.box.move(x, y))).height > 1:
                     box, within = on_whole(canvas, ink), on_whole(canvas, within.move(x, y))
-                    page.notes.append(replace(note, box=box, within=within))
+                    room = note.room * canvas.scale / canvas.whole.scale  # as the box, in the whole window's points
+                    page.notes.append(replace(note, box=box, room=room, within=within))
             page.panels += [on_whole(canvas, each.move(x, y)) for each in self.page(laid).panels]
 
         for name, method in (("text", noted_text), ("panel", noted_panel), ("sheet", noted_sheet), ("lay", noted_lay)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Final
 
 import pygame
@@ -16,7 +16,7 @@ from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
 from game.input.controls import Command, translate
 from game.scenes.digits.reader import LEAST_INK, Reading, Verdict, best_two
 from game.training.digit_models import called
-from game.ui.widget import PointsManager, RowWidget, mix
+from game.ui.widget import RowWidget, mix
 
 _DIGITS: Final = 10
 _ROW: Final = 22.0
@@ -38,8 +38,8 @@ class DigitBars(RowWidget):
 
     pad = 2.0
 
-    def __init__(self, manager: PointsManager, press: Callable[[int], Transition | None], digit: int = 0) -> None:
-        super().__init__(manager, (0, 0, 1, 1), texts.HINT_DIGIT)
+    def __init__(self, press: Callable[[int], Transition | None], digit: int = 0) -> None:
+        super().__init__((0, 0, 1, 1), texts.HINT_DIGIT)
         self._on_press, self.digit = press, digit
         self.values = [(0.0, 0.0)] * _DIGITS
         self.shown = [(0.0, 0.0)] * _DIGITS  # eased
@@ -105,6 +105,16 @@ def write_marked(cursor: Cursor, sign: Shape, words: str, colour: Colour) -> Non
     if cursor.canvas:
         cursor.canvas.marker(sign, (cursor.left + 5, cursor.y + LEADING * TEXT / 2), 10, colour)
     cursor.styled(words, TEXT, colour, indent=_INDENT, tabular=True)
+
+
+def write_legend(cursor: Cursor, words: Iterable[tuple[str, Colour]]) -> None:
+    """Write words in a line, each after a square of its colour."""
+    if canvas := cursor.canvas:
+        x, y = cursor.left, cursor.y + 15
+        for word, colour in words:
+            canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
+            x += 24 + canvas.text(word, (x + 12, y), size=LABEL, colour=MUTE).width
+    cursor.gap(24)
 
 
 def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:

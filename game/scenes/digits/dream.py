@@ -105,10 +105,10 @@ class DreamScene(PanelScene):
         left.aside(lambda: texts.DREAM_STEPS.format(step=self.dreams[self.digit].step, steps=STEPS))
         read, others = right.beside((22, 33), least=160.0)
         read.add(self._write_read)
-        self._bars = read.widget(DigitBars(self.form.manager, self.choose))
-        self._tiles = others.widget(CellPicker(
-            self.form.manager, lambda row, column: self.choose(row * self._tiles.columns + column), _TILES, GREY
-        ))  # fmt: skip
+        self._bars = read.widget(DigitBars(self.choose))
+        self._tiles = others.widget(
+            CellPicker(lambda row, column: self.choose(row * self._tiles.columns + column), _TILES, GREY)
+        )
         others.slider(texts.DREAM_CALM, self._calm, (0.0, 1.0), self._set_calm, step=0.1, figure="{:.1f}".format,
                       aside=texts.DREAM_CALM_HELP)  # fmt: skip
         if self._drawing is not None:

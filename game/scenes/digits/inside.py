@@ -14,9 +14,9 @@ from game.core.scene import push
 from game.digits.cells import CellPicker
 from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, TITLE
+from game.drawing.tokens import HUMAN, SMALL, TITLE
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
 from game.scenes.digits.sums import describe_sum, figure
@@ -140,26 +140,25 @@ class DigitInsideScene(PanelScene):
     def _describe_read(self, column: Column) -> None:
         inputs, first = self.walk.stage.inputs, self.walk.number == 0
         self._inputs: Numbers = np.moveaxis(inputs if first else _signed(inputs), 2, 0)
-        manager, spatial = self.form.manager, max(inputs.shape[:2]) > 1
+        spatial = max(inputs.shape[:2]) > 1
         if spatial:
             shades = GREY if first else SIGNED
-            self._reads = column.widget(CellPicker(manager, self._point_at_input, _READ, shades))
+            self._reads = column.widget(CellPicker(self._point_at_input, _READ, shades))
             column.gap()
         if len(self._inputs) > 1:
             most = _TILES if spatial else _READ
-            self._read_maps = column.widget(CellPicker(manager, self._look_into, most))
+            self._read_maps = column.widget(CellPicker(self._look_into, most))
             column.gap()
         if not first:
             column.caption(texts.PATCH_PICTURES["sees"])
             column.picture(_SEEN, self._draw_digit)
 
     def _describe_given(self, column: Column) -> None:
-        stage, manager = self.walk.stage, self.form.manager
+        stage = self.walk.stage
         self._outputs: Numbers = np.moveaxis(_signed(stage.outputs), 2, 0)
         if max(stage.outputs.shape[:2]) > 1:
-            self._gives = column.widget(CellPicker(
-                manager, lambda row, across: self._look_at((row, across, self.walk.place[2])), _GIVEN
-            ))  # fmt: skip
+            picker = CellPicker(lambda row, across: self._look_at((row, across, self.walk.place[2])), _GIVEN)
+            self._gives = column.widget(picker)
             column.gap()
         if (weights := self._filters_of(self.walk.channel)) is not None:
             self._weights, self._weights_of = weights, self.walk.channel
@@ -168,7 +167,7 @@ class DigitInsideScene(PanelScene):
         self._given_maps = self._tiles(column, _TILES if self._gives else _GIVEN)
 
     def _tiles(self, column: Column, most: float = _TILES) -> CellPicker:
-        picker = CellPicker(self.form.manager, lambda row, across: self._map_of(row, across, picker), most)
+        picker = CellPicker(lambda row, across: self._map_of(row, across, picker), most)
         return column.widget(picker)
 
     def _follow(self) -> None:
@@ -231,7 +230,7 @@ class DigitInsideScene(PanelScene):
         if found := code_of(self.walk):
             draw_listing(canvas, box, *found)
         else:
-            draw_wrapped(canvas, texts.LESSON_NO_SOURCE, (box.left, box.top + 16), box.width)
+            Cursor(box.left, box.top, box.width, canvas.scale, canvas).styled(texts.LESSON_NO_SOURCE, SMALL)
 
 
 def _signed(values: Numbers) -> Numbers:

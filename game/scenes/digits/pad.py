@@ -15,7 +15,6 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, LINE, NIGHT0, Colour
 from game.ui.virtual_pointer import PictureRow
-from game.ui.widget import PointsManager
 
 SIDE: Final = 520  # units along a side of every pad, whatever its size on the screen
 _LARGEST: Final = 480.0
@@ -295,9 +294,9 @@ def side_in(width: float) -> float:
     return min(width, _LARGEST)
 
 
-def pen_row(manager: PointsManager, pad: DrawingPad, colour: Colour = INK) -> PictureRow:
+def pen_row(pad: DrawingPad, colour: Colour = INK) -> PictureRow:
     """Return the row of a pad, for the mouse and for a virtual pointer."""
     return PictureRow(
-        manager, texts.POINTER, side_in, pad.handle_event,
+        texts.POINTER, side_in, pad.handle_event,
         lambda canvas, _: pad.draw(canvas, colour), square=True, hold=texts.PEN_HOLD, leave=texts.PEN_LEAVE, pace=_PACE,
     )  # fmt: skip

@@ -61,11 +61,6 @@ class QuizScene(PanelScene):
     def exit(self) -> None:
         self.pad.lift()
 
-    @property
-    def canvas_rect(self) -> pygame.Rect:
-        """The drawing area, in the window's pixels."""
-        return self.context.reading().rect(*self.pad.rect)
-
     def update(self) -> Transition | None:
         self.contest.look()
         return super().update()
@@ -144,7 +139,7 @@ class QuizScene(PanelScene):
         left.aside(texts.QUIZ_LINE)
         left.gap()
         if self._draws:
-            self._pen = left.widget(pen_row(self.form.manager, self.pad, HUMAN))
+            self._pen = left.widget(pen_row(self.pad, HUMAN))
         elif current is None or current.kind == "draw":
             left.picture(side_in, lambda canvas, _: self.pad.draw(canvas, HUMAN))
         else:

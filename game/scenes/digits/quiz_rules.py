@@ -13,8 +13,9 @@ from ai.digits.classifier import DIGITS
 from ai.digits.mnist import bright
 
 if TYPE_CHECKING:
-    from ai.digits.classifier import DigitClassifier, Image
+    from ai.digits.classifier import DigitClassifier
     from ai.digits.mnist import Pixels
+    from ai.digits.preprocessing import Image
 
 ROUNDS: Final = 10  # alternating: one drawn by the player, one read by the player
 _LOOKED_AT: Final = 300  # number of other people's digits from which the hardest to read are chosen

@@ -17,6 +17,7 @@ from ai.digits.classifier import DIGITS
 from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stages, stroke_stages
 from ai.files import brief
 from game.digits.kept import classifier_in
+from game.digits.pictures import Numbers, visible
 from game.scenes.digits.pad import DrawingPad
 from game.training.digit_models import NAMES
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 SURE: Final = 0.9  # nine in ten rightly read test images have a higher probability
 LIKELY: Final = 0.75  # and 99 in a hundred of those that Modern reads
 LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
-Numbers = npt.NDArray[np.float32]
 _log = logging.getLogger("tranquility")
 
 
@@ -133,8 +133,7 @@ class Reader:
         between = np.zeros((1, output.shape[-1]), np.float32)
         between[0, first], between[0, second] = 1, -1
         said = classifier.network.input_gradient(shaped, between).reshape(SIDE, SIDE) * image
-        parts = said / max(float(np.abs(said).max()), 1e-9)
-        return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)  # small ones are visible too
+        return visible(said / max(float(np.abs(said).max()), 1e-9))
 
 
 class LiveReading:

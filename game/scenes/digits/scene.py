@@ -14,18 +14,18 @@ from ai.digits.preprocessing import Image
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits import certainty
-from game.digits.pictures import AMBER, picture
+from game.digits.pictures import AMBER, Numbers, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, NIGHT0, SMALL, TITLE
+from game.drawing.tokens import HUMAN, LINE, MUTE, NIGHT0, SMALL, TITLE
 from game.input.controls import Command
-from game.scenes.digits.answer import DigitBars, write_answer
+from game.scenes.digits.answer import DigitBars, write_answer, write_legend
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.pad import DrawingPad, pen_row
-from game.scenes.digits.reader import LiveReading, Numbers, Reading, Verdict, best_two
+from game.scenes.digits.reader import LiveReading, Reading, Verdict, best_two
 from game.training.digit_models import NAMES, called
-from game.ui.actions import Action, Table
+from game.ui.actions import Action, Table, digit_actions
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
@@ -38,11 +38,6 @@ LEAST: Final = 280.0
 _LONGEST: Final = 16  # letters of a network's name
 _WHY: Final = 300.0  # side of a picture
 _TILE: Final = 52.0
-_DIGITS: Final = {
-    **{pygame.K_0 + digit: digit for digit in range(10)},
-    **{pygame.K_KP1 + digit - 1: digit for digit in range(1, 10)},
-    pygame.K_KP0: 0,
-}
 
 
 class DigitsScene(PanelScene):
@@ -60,7 +55,7 @@ class DigitsScene(PanelScene):
         super().__init__(context)
         self.pad, self.prepared = DrawingPad(), False
         self.live = LiveReading(self.pad, chosen, self._show_bars)
-        self._bars = DigitBars(self.form.manager, self._correct)
+        self._bars = DigitBars(self._correct)
         self._why, self._stages = PaintCache(), PaintCache()
         self._fix_of = -1  # revision of the drawing that was fixed last
         self.fixing = FixRunner(context.user_dir, context.models_dir)
@@ -93,11 +88,6 @@ class DigitsScene(PanelScene):
         return self.live.reading
 
     @property
-    def canvas_rect(self) -> pygame.Rect:
-        """The drawing area, in the window's pixels."""
-        return self.context.reading().rect(*self.pad.rect)
-
-    @property
     def probabilities(self) -> Numbers | None:
         """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
         return self.live.probabilities
@@ -115,7 +105,7 @@ class DigitsScene(PanelScene):
             Action(pygame.K_z, self.pad.undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
             Action(Command.CHOICES, self.pad.clear, texts.DIGITS_CLEAR.lower()),
             *(Action(key, self.pad.clear) for key in (Command.RETRY, pygame.K_DELETE)),
-            *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
+            *digit_actions(self._correct),
         ]
 
     def lay_out(self) -> None:
@@ -135,7 +125,7 @@ class DigitsScene(PanelScene):
         left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
         left.text(texts.DIGITS_TITLE, size=TITLE)
         left.gap()
-        self._pen = left.widget(pen_row(self.form.manager, self.pad))
+        self._pen = left.widget(pen_row(self.pad))
         left.words([
             (texts.DIGITS_UNDO, self.pad.undo),
             (texts.DIGITS_CLEAR, self.pad.clear),
@@ -160,7 +150,7 @@ class DigitsScene(PanelScene):
             (texts.PATCH_WORD, partial(self._ask, "digit_inside")),
         ])  # fmt: skip
         shown = self._bars.shown
-        self._bars = column.widget(DigitBars(self.form.manager, self._correct))
+        self._bars = column.widget(DigitBars(self._correct))
         self._bars.shown = shown
         self._show_bars()
         column.add(self._write_fix)
@@ -208,16 +198,9 @@ class DigitsScene(PanelScene):
         cursor.caption(words)
         size = min(cursor.width, _WHY)
         box = cursor.take(size)
-        if (canvas := cursor.canvas) is None or why is None:
-            cursor.gap(20)
-            return
-        self._why.draw(canvas, (box.left, box.top, size, size), why.tobytes(), partial(_paint, why))
-        if drawn:
-            x, y = cursor.left, cursor.y + 15
-            for word, colour in zip(texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), strict=True):
-                canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
-                x += 24 + canvas.text(word, (x + 12, y), size=LABEL, colour=MUTE).width
-        cursor.gap(20)
+        if cursor.canvas and why is not None:
+            self._why.draw(cursor.canvas, (box.left, box.top, size, size), why.tobytes(), partial(_paint, why))
+        write_legend(cursor, zip(texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), strict=True) if drawn else ())
 
     def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
         taken = (True, *asdict(self.live.switches).values())

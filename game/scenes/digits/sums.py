@@ -39,6 +39,7 @@ def describe_sum(column: Column, walk: UnitWalk) -> None:
     if walk.at_answer:
         column.add(lambda cursor: _write_answer(cursor, walk))
         column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
+        column.aside(texts.PATCH_AMBER)
     elif unit is None:
         column.text(texts.PATCH_OTHER.format(layer=type(walk.stage.layer).__name__))
     elif unit.weights is None:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 import pygame
 
 from ai.digits.preprocessing import SIDE, Image
@@ -14,13 +13,13 @@ from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import certainty
-from game.digits.pictures import SIGNED, Numbers, framed
+from game.digits.pictures import SIGNED, Numbers, framed, visible
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import LABEL, MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
-from game.scenes.digits.answer import DigitBars, write_large
+from game.scenes.digits.answer import DigitBars, write_large, write_legend
 from game.scenes.digits.pad import side_in
 from game.scenes.digits.reader import best_two
 from game.scenes.digits.scene import COLUMNS, LEAST
@@ -78,7 +77,7 @@ class WhyNotScene(PanelScene):
         self._painted, self._maps = PaintCache(), (PaintCache(), PaintCache())
         self._steps = 0
         self.asked = best_two(classifier.predict(self._first)[0])[1]
-        self._bars = DigitBars(self.form.manager, self.ask)
+        self._bars = DigitBars(self.ask)
         self._set_image(self._first)
         self.form.focus(self._bars)
 
@@ -146,7 +145,7 @@ class WhyNotScene(PanelScene):
         answer, evidence = right.beside((22, 33), least=160.0)
         answer.add(self._write_answer)
         eased = self._bars.shown
-        self._bars = answer.widget(DigitBars(self.form.manager, self.ask, self.asked))
+        self._bars = answer.widget(DigitBars(self.ask, self.asked))
         self._bars.shown, self._bars.best = eased, int(self.probabilities.argmax())
         self._bars.values = [(value, 0.0) for value in self.probabilities.tolist()]
         self._describe_evidence(evidence)
@@ -165,7 +164,8 @@ class WhyNotScene(PanelScene):
         ):
             part.caption(words)
             part.picture(lambda width: min(width, _MAP), lambda canvas, box, n=number: self._draw_map(canvas, box, n))  # type: ignore[misc]
-        column.add(self._write_legend)
+        legend = [each.format(asked=self.asked) for each in texts.WHY_NOT_LEGEND]
+        column.add(lambda cursor: write_legend(cursor, zip(legend, (NET, cursor.palette.warn), strict=True)))
 
     def _write_answer(self, cursor: Cursor) -> None:
         answer = int(self.probabilities.argmax())
@@ -183,14 +183,6 @@ class WhyNotScene(PanelScene):
                 cursor.canvas.rounded((cursor.left, cursor.y + 5, 8, 8), 2, colour)
             cursor.styled(words, SMALL, indent=_INDENT * marked)
             cursor.gap(4)
-
-    def _write_legend(self, cursor: Cursor) -> None:
-        if canvas := cursor.canvas:
-            x, y = cursor.left, cursor.y + 15
-            for words, colour in zip(texts.WHY_NOT_LEGEND, (NET, canvas.palette.warn), strict=True):
-                canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
-                x += 24 + canvas.text(words.format(asked=self.asked), (x + 12, y), size=LABEL, colour=MUTE).width
-        cursor.gap(24)
 
     # Pictures
 
@@ -221,8 +213,8 @@ def shown(contrast: Contrast, asked: int) -> Shown:
     scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
     changes = [contrast.best(asked, ink) for ink in (0, 1)]
     take, add = (each if each and figure(each.before) != figure(each.after) else None for each in changes)
-    return Shown(asked, contrast.answer, _inked(contrast.image), take, add, _clear(-taken / scale), _clear(put / scale),
-                 contrast.done)  # fmt: skip
+    there, missing = visible(-taken / scale), visible(put / scale)
+    return Shown(asked, contrast.answer, _inked(contrast.image), take, add, there, missing, contrast.done)
 
 
 def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:
@@ -231,11 +223,6 @@ def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:
     if not len(rows):
         return (0, SIDE - 1), (0, SIDE - 1)
     return (int(rows[0]), int(rows[-1])), (int(columns[0]), int(columns[-1]))
-
-
-def _clear(parts: npt.NDArray[np.floating[Any]]) -> Numbers:
-    """Return signed square roots, so that small values are visible too."""
-    return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
 
 
 def sentences(seen: Shown) -> list[str]:

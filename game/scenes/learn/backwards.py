@@ -147,11 +147,14 @@ class BackwardsChapter(Chapter):
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
         weights = " x ".join(map(str, (self.blames[2].size, DIGITS)))
         return [
-            Code(NeuralNetwork.backward_propagate, FullyConnectedLayer.backward_propagate,
-                 {FullyConnectedLayer.backward_propagate: shapes}),
+            Code(
+                NeuralNetwork.backward_propagate,
+                FullyConnectedLayer.backward_propagate,
+                {FullyConnectedLayer.backward_propagate: shapes},
+            ),
             Code(FullyConnectedLayer.input_error, np.dot, {np.dot: weights}),
             Code(FullyConnectedLayer.fill_gradients, np.dot),
-        ]  # fmt: skip
+        ]
 
     def below(self, column: Column) -> None:
         column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)

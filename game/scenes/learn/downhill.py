@@ -216,7 +216,7 @@ class DownhillChapter(Chapter):
         if self.line.lost or not _seen(_LINE, (self.line.trail[-1][0], cost)):
             return texts.LEARN_DOWNHILL_GONE.format(steps=steps)
         step = decimal(-slope * self.rate, 3, "+")
-        return texts.LEARN_DOWNHILL_STEP.format(cost=cost, slope=decimal(slope, 2, "+"), rate=self.rate, step=step)
+        return texts.LEARN_DOWNHILL_STEP.format(cost=cost, slope=decimal(slope, 3, "+"), rate=self.rate, step=step)
 
     def _descent_words(self, descent: Descent) -> str:
         """Return how far a descent in the valley has come."""

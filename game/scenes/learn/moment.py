@@ -18,6 +18,7 @@ from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.nn import NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
@@ -41,7 +42,7 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
-_METRES, _BELOW = 52.0, 1.2  # metres: across the picture, and below the ground
+_METRES, _BELOW, _ABOVE = 52.0, 1.2, 2.0  # metres: across the picture at least, below the ground, above the lander
 _ANSWERS: Final = (140.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
@@ -175,10 +176,13 @@ class MomentChapter(Chapter):
     def why(self) -> str:
         last = self.judged[-1]
         sentence = texts.LEARN_MOMENT_WHY.format(
-            guess=points(last.guess, 1), value=points(last.value, 1), came=points(last.came, 1),
-            plain=points(last.plain, 1), decisions=last.decisions,
+            guess=points(last.guess, 1),
+            value=points(last.value, 1),
+            came=points(last.came, 1),
+            plain=points(last.plain, 1),
+            decisions=last.decisions,
             last=f"{self.agent.config.discount ** (last.decisions - 1):.2f}",
-        )  # fmt: skip
+        )
         if len(self.judged) == 1:
             return sentence
         said = [(each.guess, each.value) for each in self.judged]
@@ -207,13 +211,17 @@ class MomentChapter(Chapter):
         if not self.flying:
             return [guess]
         came = texts.LEARN_MOMENT_CAME if self.over else texts.LEARN_MOMENT_SO_FAR
-        return [guess, Part(points(self.value, 1), texts.LEARN_MOMENT_VALUE, colour=NET),
-                Part(points(self.came, 1), came),
-                Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE)]  # fmt: skip
+        return [
+            guess,
+            Part(points(self.value, 1), texts.LEARN_MOMENT_VALUE, colour=NET),
+            Part(points(self.came, 1), came),
+            Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE),
+        ]
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        high = _METRES * box.height / box.width
-        view = view_in(box, (0.0, PARAMS.ground - _BELOW + high / 2), _METRES, canvas.scale)
+        foot = PARAMS.ground - _BELOW
+        high = max(_METRES * box.height / box.width, max(y for _, y in self._path) + _ABOVE - foot)
+        view = view_in(box, (0.0, foot + high / 2), high * box.width / box.height, canvas.scale)
         with inside(canvas, box):
             draw_ground(canvas, box, view)
             for a, b in pairwise(view.points(self._path).tolist()):
@@ -261,7 +269,7 @@ class ChoiceChapter(MomentChapter):
     def controls(self, column: Column) -> None:
         for action, name in enumerate(ACTION_NAMES):
             colour, press = NET if action == self.best else INK, partial(self.begin_with, action)
-            column.button(texts.said(name).capitalize(), press, size=SMALL + 1, colour=colour)
+            column.button(capital(texts.said(name)), press, size=SMALL + 1, colour=colour)
         column.button(texts.LEARN_MOMENT_NEXT, self.turn)
 
     def begin_with(self, action: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from typing import Final, NamedTuple
@@ -58,7 +58,7 @@ class OwnChapter(Chapter):
 
     def restart(self) -> None:
         self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
-        self.steps = {name: Step(done, sentence) for name, done, sentence in self._found()}
+        self.steps = self._found()
         self.tried = self.steps["train"].done
         self.complete = all(step.done for step in self.steps.values())
 
@@ -84,53 +84,48 @@ class OwnChapter(Chapter):
         self.context.note(texts.LEARN_OWN_NONE)
         return None
 
-    def _found(self) -> Iterator[tuple[str, bool, str]]:
-        """Yield each step's name, whether it is done, and what is known of it."""
-        sentences, runs, rescued, context = texts.LEARN_OWN_TOLD, self._runs, self._library.rescued(), self.context
+    def _found(self) -> dict[str, Step]:
+        """Return the steps, in the order of `STEPS`: whether each is done, and what is known of it."""
+        runs, rescued, context = self._runs, self._library.rescued(), self.context
         first = runs[0] if runs else rescued
-        key = "trained" if runs else "unnamed" if rescued else "untrained"
-        yield (
-            "train",
-            first is not None,
-            sentences[key].format(name=first.name if first else "", decisions=f"{first.decisions:,}" if first else ""),
-        )
-
         measured = [run for run in (*runs, rescued) if run and run.success is not None]
         best = max(measured, key=lambda run: run.success or 0.0, default=None)
-        key = "unmeasured" if best is None else "landed_unnamed" if best is rescued else "landed"
-        share = (best.success or 0.0) if best else 0.0
-        yield "land", share > 0, sentences[key].format(name=best.name if best else "", share=percent(share))
+        landed = best.success or 0.0 if best else 0.0
 
         folders = networks.folders(context.models_dir, context.user_dir)
         own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
-        name = context.settings.model
-        yield (
-            "choose",
-            name in own,
-            sentences["chosen" if name in own else "shipped"].format(name=name or networks.DEFAULT),
-        )
+        flies = context.settings.model
 
         flown = self._records.entries()
         shared = next((entry for entry in reversed(flown) if entry.network in own and entry.human < 1.0), None)
-        yield (
-            "hand",
-            shared is not None,
-            sentences["handed" if shared else "alone"].format(
-                name=shared.network if shared else "", share=percent(1.0 - shared.human if shared else 0.0)
-            ),
-        )
-
         raced_at = Progress(context.settings).raced
         raced = raced_at is not None and any(entry.when >= raced_at for entry in flown)
-        yield "race", raced, sentences["raced" if raced else "unraced"]
 
         files = []
         with suppress(OSError):
             files = own_pilots.own(self._shelf.measured())
         pilot = max(files, key=lambda each: each.landed, default=None)
-        share = pilot.landed if pilot else 0.0
-        key = "written" if share >= own_pilots.GOOD else "flown" if pilot else "unwritten"
-        yield "file", key == "written", sentences[key].format(name=pilot.name if pilot else "", share=percent(share))
+        good = pilot is not None and pilot.landed >= own_pilots.GOOD
+        return {
+            "train": _step(
+                first is not None, "trained" if runs else "unnamed" if rescued else "untrained",
+                name=first.name if first else "", decisions=f"{first.decisions if first else 0:,}",
+            ),
+            "land": _step(
+                landed > 0, "unmeasured" if best is None else "landed_unnamed" if best is rescued else "landed",
+                name=best.name if best else "", share=percent(landed),
+            ),
+            "choose": _step(flies in own, "chosen" if flies in own else "shipped", name=flies or networks.DEFAULT),
+            "hand": _step(
+                shared is not None, "handed" if shared else "alone",
+                name=shared.network if shared else "", share=percent(1.0 - shared.human if shared else 0.0),
+            ),
+            "race": _step(raced, "raced" if raced else "unraced"),
+            "file": _step(
+                good, "written" if good else "flown" if pilot else "unwritten",
+                name=pilot.name if pilot else "", share=percent(pilot.landed if pilot else 0.0),
+            ),
+        }  # fmt: skip
 
     def why(self) -> str:
         if not self._runs:
@@ -166,3 +161,7 @@ class OwnChapter(Chapter):
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         """Draw nothing: the list is all there is."""
+
+
+def _step(done: bool, key: str, **figures: str) -> Step:
+    return Step(done, texts.LEARN_OWN_TOLD[key].format(**figures))

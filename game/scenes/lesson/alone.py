@@ -90,8 +90,11 @@ class AloneFrame(Frame):
     def _figures(self) -> list[Part]:
         """Return the value, and its target."""
         count = texts.LESSON_ALONE_VALUE.format(count=len(self.alone.way) - 1)
-        return [Part(points(self.alone.way[-1] / self._scale), count, colour=NET), Part("→"),
-                Part(points(self.alone.target / self._scale), texts.LESSON_ALONE_TARGET, colour=HUMAN)]  # fmt: skip
+        return [
+            Part(points(self.alone.way[-1] / self._scale), count, colour=NET),
+            Part("→"),
+            Part(points(self.alone.target / self._scale), texts.LESSON_ALONE_TARGET, colour=HUMAN),
+        ]
 
     def _draw_way(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the way of the value to its target, step by step."""
@@ -123,7 +126,10 @@ class AloneFrame(Frame):
         before, now = (each / self._scale for each in (self._first, self.alone.outputs))
         low, span = float(min(*before, *now)), max(float(np.ptp([*before, *now])), 1e-9)
         return [
-            Line((said_action(action), points(end), points(end - start)), lit=action == self._action,
-                 bars=[(end - low) / span])
+            Line(
+                (said_action(action), points(end), points(end - start)),
+                lit=action == self._action,
+                bars=[(end - low) / span],
+            )
             for action, (start, end) in enumerate(zip(before.tolist(), now.tolist(), strict=True))
-        ]  # fmt: skip
+        ]

@@ -128,8 +128,11 @@ def _decisions(flown: Flown, discount: float) -> list[Line]:
     lines = []
     for place, (action, pay) in enumerate(zip(flown.actions.tolist(), flown.rewards.tolist(), strict=True)):
         words = (texts.REWARD_PARTS.get(name, (name,))[0] for name in flown.parts)
-        parts = [(word, points(float(paid[place]))) for word, paid in zip(words, flown.parts.values(), strict=True)
-                 if paid[place]]  # fmt: skip
+        parts = [
+            (word, points(float(paid[place])))
+            for word, paid in zip(words, flown.parts.values(), strict=True)
+            if paid[place]
+        ]
         factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
         cells = (said_action(action), points(pay), f"× {factor:.3f}", points(pay * factor))
         lines.append(Line(cells, what, figure_rows(*parts, (texts.LESSON_IN_ALL, points(pay)))))

@@ -174,8 +174,11 @@ class GradientFrame(NetworkFrame):
         )
         found = [_part(words["slope"], signed(slope), share=signed(share))]
         adam = Adam()  # which keeps sums, of which its means are shares
-        for name, memory, factor in (("mean", "gradient_sum", 1 - adam.beta1), ("square", "square_sum", 1 - adam.beta2),
-                                     ("velocity", "velocity", 1.0)):  # fmt: skip
+        for name, memory, factor in (
+            ("mean", "gradient_sum", 1 - adam.beta1),
+            ("square", "square_sum", 1 - adam.beta2),
+            ("velocity", "velocity", 1.0),
+        ):
             if memory in taken.optimizer_after:
                 before, after = (
                     factor * float(each[memory][index]) for each in (taken.optimizer_before, taken.optimizer_after)

@@ -24,7 +24,7 @@ from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.widget import PointsManager, RowWidget
+from game.ui.widget import RowWidget
 
 _CARD: Final = 132.0  # the least width of a card, in points
 _HIGH, _GAP = 54.0, 8.0
@@ -39,10 +39,8 @@ class Cards(RowWidget):
 
     """
 
-    def __init__(
-        self, manager: PointsManager, frames: Sequence[Frame], index: int, choose: Callable[[int], None]
-    ) -> None:
-        super().__init__(manager, (0, 0, 1, 1), texts.LESSON_TITLE)
+    def __init__(self, frames: Sequence[Frame], index: int, choose: Callable[[int], None]) -> None:
+        super().__init__((0, 0, 1, 1), texts.LESSON_TITLE)
         self._frames, self.index, self._choose = frames, index, choose
         self._boxes: list[pygame.FRect] = []
 
@@ -138,7 +136,7 @@ class LessonScene(PanelScene):
     def describe(self, panel: Panel) -> None:
         panel.text(lambda: f"{texts.LESSON_TITLE}: {self._whose()}", colour=MUTE)
         frames = [part.frame for part in self.parts]
-        self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
+        self.cards = panel.widget(Cards(frames, self.current, self.show))
         panel.gap(8)
         panel.text(self.frame.sentence)
         panel.gap(8)

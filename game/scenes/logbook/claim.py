@@ -50,7 +50,6 @@ class Claimed:
         return texts.FRIEND_WRONG.format(earned=sharing.words(real), why=why)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the claim in the corner, and what comes of checking it below the words of the replay."""
         draw_corner(canvas, texts.FRIEND_TITLE, self.line)
         canvas = canvas.at(0, -1)
         true, left = self.true, MARGIN

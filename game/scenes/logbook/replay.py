@@ -38,13 +38,12 @@ from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
-from game.ui.form import Part
-from game.ui.form_scene import FormScene
+from game.ui.form import FormScene, Part
 from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.playback import Playback
 from game.ui.rows import ButtonRow
-from game.ui.widget import Widget
+from game.ui.widget import OnPress, Widget
 from game.world.camera import ClearArea, View
 from game.world.paths import draw_faint, draw_futures
 from game.world.scenery import Scenery
@@ -96,7 +95,7 @@ class ReplayScene(FormScene):
 
     def enter(self) -> None:
         self.playback.stopped = True
-        self._scenery.calm = self.context.settings.reduced_motion
+        self._scenery.set_calm(self.context.settings.reduced_motion)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return None if self.explained.handle_event(event) else super().handle_event(event)
@@ -155,14 +154,12 @@ class ReplayScene(FormScene):
     # Time
 
     def go_to(self, step: int) -> None:
-        """Show another moment."""
         self.flight_replay.go_to(step)
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
 
     def _show_futures(self) -> None:
-        """Show the six futures of the moment at which the replay stops, or no longer."""
         self._futures = None
         self._asks = not self._asks
         if self._asks:
@@ -191,7 +188,6 @@ class ReplayScene(FormScene):
 
     @property
     def ended(self) -> bool:
-        """Whether the last moment is shown."""
         return self.flight_replay.complete and self.flight_replay.at >= self.flight_replay.reached
 
     def _fly(self) -> None:
@@ -226,7 +222,7 @@ class ReplayScene(FormScene):
     def _build(self) -> None:
         recording = self.record.recording
         flown = recording.actions, recording.hands
-        self._strip = Timeline(self.form.manager, _STRIP, texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go)
+        self._strip = Timeline(_STRIP, texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go)
         self.form.add(self._strip)
         self._rows: list[Widget] = []
         self._describe()
@@ -236,13 +232,14 @@ class ReplayScene(FormScene):
         self._panel = Panel(part)
         speeds, verbs = self._panel.beside((2, 3), least=0.0)
         self.playback.describe(speeds, size).compact(_LABELS, ButtonRow.pad)
-        *_, self._export_word, _ = verbs.words([
+        words: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over),
             (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
             (texts.CODE_COPY, self._copy),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
-        ], size)  # fmt: skip
+        ]
+        *_, self._export_word, _ = verbs.words(words, size)
         self.form.replace(self._rows, part.widgets)
         self._rows = part.widgets
         self._lay_out()
@@ -250,11 +247,10 @@ class ReplayScene(FormScene):
     def _lay_out(self) -> None:
         if self._size != typeface.grown(SMALL):
             self._describe()
-        scale = self.context.in_window((0, 0, 1000, 0)).width / 1000
+        scale = self.context.reading().whole.scale
         self._panel.lay_out(pygame.FRect(MARGIN, _VERBS, VIEW_SIZE[0] - 2 * MARGIN, 100.0), scale)
 
     def _take_over(self) -> Transition | None:
-        """Fly on from the moment that is shown."""
         if self.flight_replay.flight.over:
             self.context.note(texts.REPLAY_OVER)
             return None
@@ -274,7 +270,6 @@ class ReplayScene(FormScene):
         give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
-        """Start the export, or cancel the running one."""
         if self.export:
             self._stop_export()
             return
@@ -288,7 +283,6 @@ class ReplayScene(FormScene):
         self._end_export(texts.EXPORT_STOPPED)
 
     def _follow_export(self, export: Export) -> None:
-        """Show the progress of the export, or its result."""
         export.poll()
         self._export_word.label = texts.EXPORT_GOES_ON.format(percent=round(100 * export.share))
         if export.over:
@@ -313,7 +307,6 @@ class ReplayScene(FormScene):
         self.explained.draw(canvas)
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the moment that is shown, the way there and on, and its figures."""
         between = self.playback.between(alpha)
         view = self._scenery.view(canvas.scale, between).filling(canvas)
         self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
@@ -324,7 +317,6 @@ class ReplayScene(FormScene):
         readouts.draw_flight(canvas, self._readouts)
 
     def _draw_title(self, canvas: Canvas) -> None:
-        """Draw which flight it is; of a friend's, the claim, and what comes of checking it."""
         if self.claimed:
             self.claimed.draw(canvas)
             return

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Point
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
+    from game.ui.widget import OnPress
 
 _LEAST: Final = 320.0  # points of a column
 _COLUMNS: Final = (150.0, 0.0)  # from the right end of the list: where course and result end
@@ -62,7 +63,6 @@ class LogbookScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the list, and the chosen flight."""
         panel.title(texts.LOGBOOK_TITLE)
         if self._records.problem:
             panel.aside(self._records.problem)
@@ -71,10 +71,10 @@ class LogbookScene(PanelScene):
         self.items: list[Entry] = self._shown
         index = self.items.index(self.chosen) if self.chosen in self.items else 0
         self.chosen = self.items[index] if self.items else None
+        rows, watch, none = [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY
         self._list = left.listing(
-            [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY, index=index,
-            on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
-        )  # fmt: skip
+            rows, watch, none, index=index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1
+        )
         left.button(texts.CODE_PASTE, partial(paste, self.context))
         self.form.focus(self._list)
         self._describe_chosen(self._beside)
@@ -92,10 +92,8 @@ class LogbookScene(PanelScene):
         entry = self.chosen
         if entry and self._replayable:
             column.button(texts.LOGBOOK_WATCH, self._watch, size=TITLE, colour=INK)
-            column.words([
-                (texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy),
-                (texts.LOGBOOK_THROW_AWAY, self._throw_away),
-            ])  # fmt: skip
+            verbs: list[tuple[str, OnPress]] = [(texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy)]
+            column.words([*verbs, (texts.LOGBOOK_THROW_AWAY, self._throw_away)])
         elif entry and entry.file in self._thrown:
             column.button(texts.LOGBOOK_BRING_BACK, self._bring_back, size=TITLE, colour=INK)
         if entry:
@@ -116,7 +114,6 @@ class LogbookScene(PanelScene):
         return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else result
 
     def actions(self) -> Table:
-        """Move, choose, go back; the Delete key throws a flight away, and Z brings it back."""
         undo = [Action(pygame.K_z, self._undo)] if self._last_thrown in self._thrown else []
         return [self.form.moves, *super().actions(), Action(pygame.K_DELETE, self._throw_away), *undo]
 
@@ -169,7 +166,6 @@ class LogbookScene(PanelScene):
             self._tell(self._records.throw_away(self.chosen.file), texts.LOGBOOK_THROWN)
 
     def _undo(self) -> None:
-        """Bring back the flight that was thrown away last."""
         self._tell(self._records.bring_back(self._last_thrown), texts.LOGBOOK_BROUGHT_BACK)
 
     def _bring_back(self) -> None:
@@ -177,7 +173,6 @@ class LogbookScene(PanelScene):
             self._tell(self._records.bring_back(self.chosen.file), texts.LOGBOOK_BROUGHT_BACK)
 
     def _tell(self, done: bool, words: str) -> None:
-        """Report what was done, or why it failed, and show the flights as they are now."""
         self.context.note(words if done else self._records.problem)
         self.enter()
         self.form.focus(self._list)

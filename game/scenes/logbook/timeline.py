@@ -11,7 +11,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
 from game.flight.flight import StickHolder
-from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widget import Widget, mix
 
 V = TypeVar("V")
 _LABELS: Final = 84.0  # room for the lanes' names
@@ -28,7 +28,6 @@ class Timeline(Widget):
 
     def __init__(
         self,
-        manager: PointsManager,
         box: tuple[float, float, float, float],
         words: Sequence[str],
         actions: Sequence[int],
@@ -36,7 +35,7 @@ class Timeline(Widget):
         on_go_to: Callable[[int], None],
         on_press: Callable[[], None],
     ) -> None:
-        super().__init__(manager, box, "")
+        super().__init__(box, "")
         self._still = PaintCache()
         self._words, self._on_go_to, self._on_press = words, on_go_to, on_press
         self.length = max(1, len(actions))
@@ -56,12 +55,10 @@ class Timeline(Widget):
         return None
 
     def shift(self, direction: int) -> bool:
-        """Go a tenth of a second back or on."""
         self._on_go_to(self.at + _STEP * direction)
         return True
 
     def drag(self, x: float) -> None:
-        """Go to the step under the mouse."""
         left, width = self.track
         self._on_go_to(round(self.length * (x - left) / width))
 
@@ -76,7 +73,6 @@ class Timeline(Widget):
         return left + width * min(max(step / self.length, 0.0), 1.0)
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the strip, the lanes below it and the mark of the moment."""
         super().paint(canvas)
         (left, width), top = self.track, self.box.top + _TOP
         self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)

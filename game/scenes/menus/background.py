@@ -93,18 +93,16 @@ class MenuBackground:
     def draw(self, canvas: Canvas, alpha: float) -> None:
         time = 0.0 if self.still else (self._step + alpha) * STEP
         view = self._camera.view(canvas.scale).filling(canvas)
-        landscape(canvas.surface.get_size(), self.still).draw(canvas, self._camera, time, earth=_EARTH)
+        landscape(canvas.surface.get_size(), self.still, "moon").draw(canvas, self._camera, time, earth=_EARTH)
         draw_ground(canvas, view, self.env.ground, time)
         self.stage.draw_lander(canvas, view, self.poses.at(alpha)[0])
         self.stage.draw_dust(canvas, view, alpha)
 
     @property
     def over(self) -> bool:
-        """Whether the flight has ended."""
         return bool(self.env.outcome[0] != Outcome.FLYING)
 
     def _begin(self) -> None:
-        """Place the lander on the pad, ready to ascend."""
         self._stand(self.env.pad[0, 0])
         self._climbs, self._rested = True, 0
         self.poses, self.stage = Poses(self.env), Stage(self.env, np.random.default_rng(0))

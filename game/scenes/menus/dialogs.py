@@ -13,8 +13,7 @@ from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Scene, Transition
 from game.drawing.tokens import FAINT
 from game.ui.hints import HintRow, hint_lines
-from game.ui.panel_scene import PanelScene
-from game.ui.still_picture import StillPicture
+from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 _MARGIN: Final = 32.0
-_FOOT: Final = 30.0  # from the box to the hints
+_FOOT: Final = 30.0  # of the box, for the hints: nothing of the scene below shows behind them
 
 
 class Dialog(PanelScene):
@@ -54,7 +53,6 @@ class Dialog(PanelScene):
         """Add what there is to choose from."""
 
     def room(self, canvas: Canvas) -> pygame.FRect:
-        """Return the room of the rows: as high as they are, in the middle of the window."""
         view = canvas.view
         width = min(self.most, view.width - 16) - 2 * _MARGIN
         height = min(self.panel.height, view.height - 2 * _MARGIN - 2 * _FOOT)
@@ -62,12 +60,13 @@ class Dialog(PanelScene):
 
     @property
     def box(self) -> pygame.FRect:
-        """The dialog's box, in points."""
-        return self.panel.box.inflate(2 * _MARGIN, 1.5 * _MARGIN)
+        box = self.panel.box.inflate(2 * _MARGIN, 1.5 * _MARGIN)
+        box.height += _FOOT
+        return box
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         box = self.box
-        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom + _FOOT), canvas.view.right - box.left)
+        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom - 20), box.width - 2 * _MARGIN)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._behind.draw(canvas)
@@ -85,7 +84,6 @@ class QuestionDialog(Dialog):
         super().__init__(below, question, more)
 
     def add_answers(self, panel: Panel) -> None:
-        """Add a word for each answer."""
         panel.words([(label, _closing(answer)) for label, answer in self._answers])
 
 
@@ -101,7 +99,6 @@ class NameDialog(Dialog):
         self._entry.begin()
 
     def add_answers(self, panel: Panel) -> None:
-        """Add the line to type in, and the words that end it."""
         self._entry = panel.entry(self._suggestion, self._done, Pop, LONGEST_NAME, fitting)
         panel.words([(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
 
@@ -126,7 +123,6 @@ class ListDialog(Dialog):
         super().__init__(below, question)
 
     def add_answers(self, panel: Panel) -> None:
-        """Add the list."""
         panel.listing(self._rows, self._pick, texts.PICKING_EMPTY)
 
     def _pick(self, number: int) -> Transition:

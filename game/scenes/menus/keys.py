@@ -14,7 +14,7 @@ from game.input.bindings import Bindings, Meaning
 from game.input.controls import Command, Controls, Held, key_name
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
-from game.ui.widget import PointsManager, RowWidget, mix
+from game.ui.widget import RowWidget, mix
 
 if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
@@ -33,35 +33,26 @@ class BindingCell(RowWidget):
     pad = 4.0
 
     def __init__(
-        self,
-        manager: PointsManager,
-        controls: Controls,
-        bindings: Bindings,
-        meaning: Meaning,
-        on_change: Callable[[str], None],
+        self, controls: Controls, bindings: Bindings, meaning: Meaning, on_change: Callable[[str], None]
     ) -> None:
-        super().__init__(manager, (0, 0, 1, 1), texts.BINDINGS[meaning.name])
+        super().__init__((0, 0, 1, 1), texts.BINDINGS[meaning.name])
         self._controls, self._bindings, self._meaning, self._on_change = controls, bindings, meaning, on_change
         self._for_pads = bindings is controls.buttons
 
     def press(self) -> None:
-        """Wait for a key or a button; for a button only if there is a pad."""
         waits = bool(self._controls.pads) or not self._for_pads
         self.typing = self._controls.listening = waits
         self._on_change("" if waits else texts.BINDINGS_NO_PAD)
 
     def stop(self) -> None:
-        """Stop waiting for a key."""
         if self.typing:
             self.typing = self._controls.listening = False
 
     def cancel(self) -> None:
-        """Stop waiting for a key, and leave the binding as it is."""
         self.stop()
         self._on_change("")
 
     def reset(self) -> None:
-        """Restore the default binding."""
         self._change(lambda: self._bindings.reset(self._meaning))
 
     def take(self, event: pygame.event.Event) -> bool:
@@ -79,7 +70,6 @@ class BindingCell(RowWidget):
         return True
 
     def _bind(self, code: int) -> None:
-        """Bind a key, or say why it can't be bound, and wait for another."""
         what = self._word(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
@@ -107,21 +97,17 @@ class BindingCell(RowWidget):
         return self._controls.gamepad_sign(code) if self._for_pads else key_name(code)
 
     def ease(self, at_once: bool) -> None:
-        """Stop waiting once the focus is elsewhere."""
         super().ease(at_once)
         if not self.focused:
             self.stop()
 
     def write(self, cursor: Cursor) -> None:
-        """Write the keys, or the prompt for a new one."""
         if self.typing:
             words, colour = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY, HUMAN
         else:
             names = self._controls.gamepad_signs if self._for_pads else self._controls.key_names
             words, colour = _BETWEEN.join(names(self._meaning)) or texts.BINDINGS_NONE, mix(MUTE, INK, self.warmth)
-        styled = cursor.in_style(colour=colour)
-        styled.text(words)
-        cursor.y = styled.y
+        cursor.styled(words, colour=colour)
 
 
 class BindingsScene(PanelScene):
@@ -143,7 +129,6 @@ class BindingsScene(PanelScene):
         self.form.focus(self.form.widgets[1])  # the first key
 
     def describe(self, panel: Panel) -> None:
-        """Add the two halves' names, what came of the last change, and the table of one half."""
         controls = self._controls
         panel.title(texts.BINDINGS_TITLE)
         panel.gap(4)
@@ -160,7 +145,7 @@ class BindingsScene(PanelScene):
             name.gap(BindingCell.pad)
             name.text(texts.BINDINGS[meaning.name])
             for cell, bindings in zip(cells, (controls.keys, controls.buttons), strict=True):
-                cell.widget(BindingCell(self.form.manager, controls, bindings, meaning, self._changed))
+                cell.widget(BindingCell(controls, bindings, meaning, self._changed))
         panel.line()
         panel.gap(8)
         panel.button(texts.BINDINGS_ALL, self._reset_all)

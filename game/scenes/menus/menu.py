@@ -79,7 +79,6 @@ class MenuScene(_OverMoon):
             panel.button(texts.MENU[name][0], partial(self._open, name), size=_WORD, weight="light")
 
     def lay_out(self) -> None:
-        """Lay the words out closer in a low window."""
         for word in self.form.widgets:
             word.pad = _PAD * self._roominess  # type: ignore[attr-defined]
         super().lay_out()
@@ -90,7 +89,6 @@ class MenuScene(_OverMoon):
         return min(max((self.context.reading().view.height - _LOW) / (VIEW_SIZE[1] - _LOW), 0.0), 1.0)
 
     def actions(self) -> Table:
-        """Move, choose, switch to the full screen; Escape leads to Quit."""
         full_screen = Action(Command.FULLSCREEN, self.context.toggle_full_screen, texts.HINT_FULL_SCREEN)
         return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), full_screen]
 
@@ -98,9 +96,7 @@ class MenuScene(_OverMoon):
         view = self.context.reading().view
         size = min(_TITLE, _ACROSS * view.width, _DOWN * view.height)
         cursor.gap(_ABOVE * self._roominess)
-        title = cursor.in_style(size, weight="extralight")
-        title.text(texts.GAME)
-        cursor.y = title.y
+        cursor.styled(texts.GAME, size, weight="extralight")
 
     def _write_line(self, cursor: Cursor) -> None:
         """Write where the word in focus leads to, and leave room for the longest of these lines."""
@@ -155,7 +151,6 @@ class FlightsScene(_OverMoon):
             context.note(problem)
 
     def _free(self, rung: int) -> str:
-        """Say from where a free flight begins."""
         if self.context.settings.three_pads:
             return texts.THREE_PADS.lower()
         return texts.FLIGHTS_RUNG.format(number=rung + 1) if rung < TOP_RUNG else texts.FLIGHTS_ANYWHERE
@@ -164,10 +159,8 @@ class FlightsScene(_OverMoon):
         panel.title(texts.FLIGHTS_TITLE)
         panel.gap(8)
         for name, route in FLIGHTS.items():
-            panel.button(
-                texts.FLIGHTS[name][0], partial(push, route), partial(self._line, name),
-                figure=partial(self._figure, name), size=_WORD, weight="light", colour=INK,
-            )  # fmt: skip
+            word, line, figure = texts.FLIGHTS[name][0], partial(self._line, name), partial(self._figure, name)
+            panel.button(word, partial(push, route), line, figure=figure, size=_WORD, weight="light", colour=INK)
 
     def _line(self, name: str) -> str:
         """Return what it is, where there is room for that."""

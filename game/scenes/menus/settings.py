@@ -19,6 +19,7 @@ from game.input.controls import Command, Held
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
 from game.ui.panel_scene import PanelScene
+from game.ui.rows import percent
 from game.world import lander
 
 if TYPE_CHECKING:
@@ -57,12 +58,10 @@ class SettingsScene(PanelScene):
         self.build()
 
     def build(self) -> None:
-        """Describe the rows anew."""
         self._switches: dict[str, ToggleRow] = {}
         super().build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the names of the groups, and the settings of one."""
         panel.title(texts.SETTINGS_TITLE)
         panel.gap(8)
         words = [texts.SETTINGS_GROUPS[name] for name in GROUPS_OF_SETTINGS]
@@ -71,13 +70,10 @@ class SettingsScene(PanelScene):
         panel.line()
         panel.gap(12)
         left, right = panel.beside((1, 1), _LEAST)
-        {
-            "picture": self._describe_picture, "sound": self._describe_sound, "controls": self._describe_controls,
-            "flights": self._describe_flights,
-        }[self.group](left, right)  # fmt: skip
+        groups = self._describe_picture, self._describe_sound, self._describe_controls, self._describe_flights
+        groups[GROUPS_OF_SETTINGS.index(self.group)](left, right)
 
     def update(self) -> Transition | None:
-        """Animate the widgets, and follow what keys have changed."""
         for name in ("full_screen", "muted"):
             if widget := self._switches.get(name):
                 widget.value = getattr(self.context.settings, name)
@@ -95,10 +91,8 @@ class SettingsScene(PanelScene):
     def _describe_picture(self, left: Column, right: Column) -> None:
         sizes, chosen = list(TEXT_SIZES), self.context.settings.text_size
         self._toggles(left, "full_screen")
-        left.choice(
-            texts.TEXT_SIZE, [texts.TEXT_SIZES[name] for name in sizes], sizes.index(chosen) if chosen in sizes else 0,
-            lambda number: self._set("text_size", sizes[number]),
-        )  # fmt: skip
+        words, now = [texts.TEXT_SIZES[name] for name in sizes], sizes.index(chosen) if chosen in sizes else 0
+        left.choice(texts.TEXT_SIZE, words, now, lambda number: self._set("text_size", sizes[number]))
         names = catalogue.languages(catalogue.LOCALE)
         codes = list(names)
         spoken, choose = codes.index(texts.LANGUAGE), lambda number: self._set("language", codes[number])
@@ -113,11 +107,10 @@ class SettingsScene(PanelScene):
         if self.context.sound.problem:
             left.text(texts.SOUND_PROBLEM)
         for number, group in enumerate(_VOLUMES):
-            (left if number < 3 else right).slider(
-                texts.SOUND_GROUPS[group], getattr(self.context.settings, f"{group}_volume"), (0.0, 1.0),
-                partial(self._set_volume, group), step=0.1, figure=_loudness,
-                aside=texts.SOUND_ALTITUDE if group == "altitude" else "",
-            )  # fmt: skip
+            column, label = left if number < 3 else right, texts.SOUND_GROUPS[group]
+            value, change = getattr(self.context.settings, f"{group}_volume"), partial(self._set_volume, group)
+            aside = texts.SOUND_ALTITUDE if group == "altitude" else ""
+            column.slider(label, value, (0.0, 1.0), change, step=0.1, figure=_loudness, aside=aside)
 
     def _describe_controls(self, left: Column, right: Column) -> None:
         left.button(texts.BINDINGS_OPEN, lambda: push("bindings"), texts.BINDINGS_LINE, colour=INK)
@@ -128,8 +121,9 @@ class SettingsScene(PanelScene):
     def _describe_flights(self, left: Column, right: Column) -> None:
         settings = self.context.settings
         self._toggles(left, "wider_pads", "untimed")
-        left.slider(texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1,
-                    figure=_percent)  # fmt: skip
+        left.slider(
+            texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1, figure=percent
+        )
         left.gap(6)
         left.aside(texts.ASSISTS_COUNTED)
         flown = texts.TUTORIAL_FLOWN if settings.first_flown else ""
@@ -160,12 +154,9 @@ class SettingsScene(PanelScene):
     # Progress
 
     def _ask_to_reset(self) -> Transition:
-        """Ask before all progress is put away, and say what that is."""
-        figures = self._progress.figures
-        more = " ".join([
-            texts.PROGRESS_FLIGHTS.format(count=figures.flights), texts.PROGRESS_MEDALS.format(count=figures.medals),
-            texts.PROGRESS_CHAPTERS.format(count=figures.chapters), texts.PROGRESS_STAYS,
-        ])  # fmt: skip
+        kinds = texts.PROGRESS_FLIGHTS, texts.PROGRESS_MEDALS, texts.PROGRESS_CHAPTERS
+        lost = [text.format(count=count) for text, count in zip(kinds, self._progress.figures, strict=True)]
+        more = " ".join([*lost, texts.PROGRESS_STAYS])
         answers = [(texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset)]
         return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, more, answers))
 
@@ -210,9 +201,5 @@ def _draw_scene(canvas: Canvas, box: pygame.FRect) -> None:
         canvas.bar((column.left, figures.y + 2, column.width - 20, 3), share, good if within else warn)
 
 
-def _percent(share: float) -> str:
-    return texts.SOUND_SHARE.format(percent=round(100 * share))
-
-
 def _loudness(volume: float) -> str:
-    return _percent(volume) if volume else texts.SOUND_OFF
+    return percent(volume) if volume else texts.SOUND_OFF

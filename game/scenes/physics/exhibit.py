@@ -10,17 +10,47 @@ import numpy as np
 
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
-from engine.vector import Array
+from engine.vector import Array, cross, rotate
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MUTE, SMALL
 from game.world.camera import View
-from game.world.grip import Grip
 
 CLEAR: Final = 0.35  # height that is seen above the ground, as a share of the room's width
 BELOW: Final = 0.05  # and below it
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
 _FIXED, _BOXES, _DISCS = range(3)  # layers
+# Of a grip: its spring's rad/s, its damping, 1 being critical, and its greatest m/s²: a hand throws, it tears nothing.
+_PACE, _DAMPING, _STRONGEST = 12.0, 0.8, 150.0
+
+
+class Grip:
+    """Spring that pulls the gripped point of `body` towards `target`, the place of the hand in metres."""
+
+    def __init__(self, body: Body, place: Array) -> None:
+        self.body = body
+        self.target = place
+        angle = float(body.angle[0])
+        self._arm = rotate(place - body.position[0], np.cos(-angle), np.sin(-angle))
+
+    def place(self, pose: Array) -> Array:
+        """Return the gripped point, in metres, with the body at a pose (3,)."""
+        return pose[:2] + rotate(self._arm, np.cos(pose[2]), np.sin(pose[2]))
+
+    def pull(self) -> None:
+        """Apply the spring's force for the next step."""
+        body = self.body
+        arm = self.place(np.append(body.position[0], body.angle[0])) - body.position[0]
+        turning = float(body.angular_velocity[0])
+        velocity = body.velocity[0] + turning * np.array([-arm[1], arm[0]])
+        away = self.target - body.position[0] - arm
+        # Effective mass of the body at that point: it falls with the distance from the centre of mass.
+        mass = 1.0 / (1.0 / body.mass + float(arm @ arm) / body.inertia)
+        force = mass * (_PACE**2 * away - 2 * _DAMPING * _PACE * velocity)
+        most = _STRONGEST * mass
+        force *= min(1.0, most / max(float(np.hypot(*force)), 1e-9))
+        body.apply_force(force)
+        body.apply_torque(cross(arm, force))
 
 
 @dataclass(frozen=True)
@@ -85,7 +115,7 @@ class Exhibit:
         weightless: whether there is no gravity, whatever was chosen.
         values: the quantities, by name.
         result: the number that this run has measured; None until then, and if a hand has come in before.
-        sprites: all that is drawn, by the image keys of `game.world.bodies`.
+        sprites: all that is drawn, by the image keys of `game.scenes.physics.bodies`.
         bodies: the movable bodies.
         rules: reference lines at known heights or places, as start and end in metres.
         touched: by body, (bodies,), whether a hand has moved it, or it has met one that a hand had moved.

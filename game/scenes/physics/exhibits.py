@@ -35,7 +35,6 @@ class Stack(Exhibit):
         return values["boxes"] * gravity
 
     def build(self) -> None:
-        """Add the columns and the pyramid, of boxes of one kilogram."""
         self.world.iterations = round(self.values["iterations"])
         levels = range(round(self.values["boxes"]))
         self.columns = [[self._box(x, level) for level in levels] for x in (-5.4, -2.7, 0.0)]
@@ -101,7 +100,6 @@ class Heap(Exhibit):
         return values["count"] * gravity
 
     def build(self) -> None:
-        """Place the bodies in rows above the floor, each a little askew."""
         self.world.iterations = 6  # enough to come to rest: no load passes through more than a few bodies
         rng = np.random.default_rng(_SEED)
         for number in range(round(self.values["count"])):
@@ -160,7 +158,6 @@ class Impacts(Exhibit):
         return cls.pace * 2 * values["striker"] / (values["striker"] + 1) * handed**cls.row
 
     def build(self) -> None:
-        """Lay the rails, and set the strikers in motion."""
         self.discs: list[list[Body]] = []
         pitch = 2 * self.radius + self.gap
         for number, rail in enumerate(self.rails):
@@ -225,7 +222,6 @@ class Spin(Exhibit):
         return values["reach"] * values["impulse"] / inertia
 
     def build(self) -> None:
-        """Add three bodies spinning with the same angular momentum, and two bars to be pushed."""
         ceiling = CLEAR * self.width
         self.world.add(Polygon.box(self.width, 4.0), (0.0, ceiling + 2.0), static=True)
         self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))

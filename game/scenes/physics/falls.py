@@ -98,7 +98,6 @@ class Bounce(Exhibit):
         return values["restitution"] ** 2 * values["drop"]
 
     def build(self) -> None:
-        """Place the balls, and mark the height to which each will bounce."""
         drop = self.values["drop"]
         self.restitutions = np.array((0.0, 0.25, 0.5, self.values["restitution"], 1.0))
         self.expected, self.columns = self.restitutions**2 * drop, -8.8 + 4.0 * np.arange(len(self.restitutions))
@@ -175,7 +174,6 @@ class DragRace(Exhibit):
         return low * gravity / ease
 
     def build(self) -> None:
-        """Place the discs in a row."""
         drag = self.values["linear_drag"]
         # Name of the column, mass, linear drag in kg/s, quadratic drag in kg/m.
         self.lanes = (

@@ -85,7 +85,6 @@ class LawPlot:
         return self.exhibit.law(self.exhibit.gravity, self.exhibit.values | {self.name: x})
 
     def refresh(self) -> None:
-        """Take in new results."""
         self.points = self._results.along(self.exhibit, self.name)
         self.worst = max((abs(result - self._law_at(x)) for x, result in self.points), default=0.0)
         now = self.exhibit.values[self.name]
@@ -101,11 +100,9 @@ class LawPlot:
         self._chart.mark(now)
 
     def update(self) -> None:
-        """Advance by 1/60 s."""
         self._chart.update()
 
     def hover(self, point: Point | None) -> None:
-        """Show the values under the mouse, a point of the canvas."""
         self._chart.hover(point)
 
     def describe(self, column: Column, progress: Callable[[], str]) -> None:

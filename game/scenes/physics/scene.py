@@ -20,7 +20,8 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL, Colour
 from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.physics.exhibit import BELOW, CLEAR
+from game.scenes.physics.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
+from game.scenes.physics.exhibit import BELOW, CLEAR, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results
 from game.ui.actions import Action, Table
@@ -28,11 +29,9 @@ from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.playback import Playback
-from game.ui.rows import ButtonRow
 from game.ui.virtual_pointer import PictureRow
-from game.world.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
+from game.ui.widget import OnPress
 from game.world.camera import View
-from game.world.grip import Grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)
@@ -79,7 +78,6 @@ class PhysicsScene(PanelScene):
     # The exhibit
 
     def restart(self) -> None:
-        """Begin the exhibit anew."""
         self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity], self.values.get(self.chosen))
         self._waits = self.measuring = self.grip = None
         self._outlines = Outlines(self.exhibit.sprites)
@@ -89,7 +87,6 @@ class PhysicsScene(PanelScene):
             self.plot = LawPlot(self.exhibit, self._axis, self.results)
 
     def _show(self) -> None:
-        """Begin an exhibit, with rows of its own."""
         self.restart()
         self.build()
 
@@ -120,23 +117,19 @@ class PhysicsScene(PanelScene):
         self._waits = _REST if len(self.exhibit.bodies) > _MANY else 0
 
     def _reset(self) -> None:
-        """Put the quantities back to what they were at first."""
         self.values.pop(self.chosen, None)
         self._show()
 
     def toggle_plot(self) -> None:
-        """Show or hide law and measurement."""
         self.measuring = None
         self.plot = None if self.plot else LawPlot(self.exhibit, self._axis, self.results)
         self.build()
 
     def measure(self) -> None:
-        """Begin to measure the whole range, or stop that."""
         self.measuring = None if self.measuring else RangeMeasurement(self.exhibit, self._axis, self.results)
         self.build()
 
     def toggle_contacts(self) -> None:
-        """Draw contacts, or hide them."""
         self.contacts_drawn = not self.contacts_drawn
         self.build()
 
@@ -203,9 +196,7 @@ class PhysicsScene(PanelScene):
         left.text(texts.EXHIBITS[self.chosen][1])
         left.text(self._said, size=SMALL, colour=MUTE, tabular=True)
         left.gap()
-        self.room_row = left.widget(
-            PictureRow(self.form.manager, texts.POINTER, self._height, self._point, hold=texts.POINTER_GRIP)
-        )
+        self.room_row = left.widget(PictureRow(texts.POINTER, self._height, self._point, hold=texts.POINTER_GRIP))
         left.add(self._write_legend)
         self._describe_bench(right)
 
@@ -213,18 +204,18 @@ class PhysicsScene(PanelScene):
         what = texts.EXPLAIN_PHYSICS
         for quantity in self.exhibit.quantities:
             label, figure = texts.QUANTITIES[quantity.name]
-            column.slider(
-                label, self.exhibit.values[quantity.name], quantity.limits, partial(self._change, quantity.name),
-                step=quantity.step, figure=partial(_filled, figure),
-            )  # fmt: skip
+            value, change = self.exhibit.values[quantity.name], partial(self._change, quantity.name)
+            shown = partial(_filled, figure)
+            column.slider(label, value, quantity.limits, change, step=quantity.step, figure=shown)
             column.explain(what["slider"])
-        buttons = column.words([
+        words: list[tuple[str, OnPress]] = [
             (texts.LAW_START_VALUES, self._reset),
             (texts.LAW_PLOT, self.toggle_plot),
             (texts.LAW_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             (texts.PHYSICS_MORE[self.more], self._open_more),
-        ])  # fmt: skip
-        self._button_help: list[tuple[ButtonRow, str]] = [(buttons[1], what["plot"]), (buttons[2], what["inside"])]
+        ]
+        buttons = column.words(words)
+        self._button_help = [(buttons[1], what["plot"]), (buttons[2], what["inside"])]
         column.gap()
         if self.plot:
             self.plot.describe(column, self._progress)
@@ -251,7 +242,6 @@ class PhysicsScene(PanelScene):
         self.build()
 
     def _said(self) -> str:
-        """Return the law in the exhibit's own figures."""
         return texts.EXHIBITS[self.chosen][2][self.exhibit.state].format(**self.exhibit.figures())
 
     def _progress(self) -> str:
@@ -275,7 +265,6 @@ class PhysicsScene(PanelScene):
         return View.within(box, scale, (0.0, middle), box.width / wide)
 
     def _point(self, event: pygame.event.Event) -> None:
-        """Grip, pull or release a body."""
         self._mouse = event.pos
         if event.type == pygame.MOUSEBUTTONDOWN and (body := self._body_at(_REACH)):
             self.grip = Grip(body, self.view(1.0).metres(self._mouse))

@@ -22,8 +22,7 @@ from engine.integrate import integrate_position, integrate_velocity
 from engine.solver import Solver
 from engine.vector import Array, Ints
 from game.core import texts
-from game.scenes.physics.exhibit import Exhibit
-from game.world.grip import Grip
+from game.scenes.physics.exhibit import Exhibit, Grip
 
 NARROW: Final = (collide_polygons, collide_polygon_circle, collide_circles)  # by the number of circles of a pair
 # Functions that are recorded; of some, variables that are shown beside the lines that set them, and on which axis a

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -13,19 +14,17 @@ from game.core import texts
 from game.core.source import source_of
 from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
-from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.bodies import Outlines
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.step import Axis, Impulse, Pair, Piece, StepRecord, written
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.world.bodies import Outlines
 from game.world.camera import View
-from game.world.grip import Grip
 
 _PICTURE, _LISTING = 344.0, 400.0  # heights
 _LEAST: Final = 420.0  # width of a column
@@ -70,10 +69,8 @@ class PhysicsStepScene(PanelScene):
         self._tabs = panel.choice("", words, chosen, self._turn_to_kind)
         panel.text(lambda: self.record.sentence(self.piece, self.pair))
         last = len(self.pieces) - 1
-        self._slider = panel.slider(
-            texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1,
-            figure=lambda value: texts.STEP_PLACE.format(count=value + 1, total=last + 1),
-        )  # fmt: skip
+        count = partial(_counted, last + 1)
+        self._slider = panel.slider(texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1, figure=count)
         left, *right = panel.beside((1, 1) if self.in_code else (1,), least=_LEAST, apart=40.0)
         left.picture(_PICTURE, self._draw_picture)
         left.add(self._write_legend)
@@ -84,7 +81,6 @@ class PhysicsStepScene(PanelScene):
 
     @property
     def piece(self) -> Piece:
-        """The piece that is shown."""
         return self.pieces[self.place]
 
     def _follow(self, pair: Pair | None, kind: str = "") -> None:
@@ -128,7 +124,7 @@ class PhysicsStepScene(PanelScene):
     def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
         piece, source = self.piece, source_of(self.piece.function)
         if source is None:
-            draw_wrapped(canvas, texts.LESSON_NO_SOURCE, (box.left, box.top + 14), box.width, colour=MUTE)
+            Cursor(box.left, box.top, box.width, canvas.scale, canvas).aside(texts.LESSON_NO_SOURCE)
             return
         draw_listing(canvas, box, source, piece.line, piece.notes)
 
@@ -257,13 +253,14 @@ class PhysicsStepScene(PanelScene):
 
     def _write_legend(self, cursor: Cursor) -> None:
         for colour, length, words in self._legend():
-            row = cursor.in_style(SMALL, MUTE)
             if cursor.canvas:
-                y = row.baseline - 4
-                _arrow(cursor.canvas, (row.left, y), (row.left + length, y), colour, 2)
-            row.left, row.width = row.left + _ARROW + 12, row.width - _ARROW - 12
-            row.text(words)
-            cursor.y = row.y
+                y = cursor.in_style(SMALL).baseline - 4
+                _arrow(cursor.canvas, (cursor.left, y), (cursor.left + length, y), colour, 2)
+            cursor.styled(words, SMALL, MUTE, indent=_ARROW + 12)
+
+
+def _counted(total: int, place: float) -> str:
+    return texts.STEP_PLACE.format(count=place + 1, total=total)
 
 
 def _scale(values: list[Array]) -> tuple[float, float] | None:

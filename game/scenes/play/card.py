@@ -63,12 +63,10 @@ class ShownCard:
         return pygame.FRect(left, top - 10 * (1 - self.shown), width, height)
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the keys at its foot."""
         box = self.box(canvas)
         return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom - 22), box.width - 2 * _MARGIN)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw it."""
         box = self.box(canvas)
         canvas.panel(box, _COVER)
         rows = Cursor(box.left + _MARGIN, box.top, box.width - 2 * _MARGIN, canvas.scale, canvas)
@@ -102,7 +100,6 @@ class ShownCard:
             rows.gap(4)
 
     def _write_title(self, rows: Cursor) -> None:
-        """Write how it ended, after a sign."""
         card = self.card
         colour = INK if card.intact else rows.palette.good if card.good else rows.palette.warn
         if rows.canvas:
@@ -113,7 +110,6 @@ class ShownCard:
         rows.styled(card.title, TITLE, colour, indent=_SIGN)
 
     def _write_scores(self, rows: Cursor) -> None:
-        """Write the score behind the lamps of its medal, and below it others from the same start."""
         card, small = self.card, rows.in_style(SMALL, MUTE)
         if card.score:
             if rows.canvas:
@@ -127,7 +123,6 @@ class ShownCard:
         rows.y = small.y
 
     def _write_figures(self, rows: Cursor) -> None:
-        """Write the figures of the flight side by side, in two rows where their names need it."""
         figures = self.card.figures
         widest = max(rows.in_style(LABEL, weight="medium").measured(label) for label, _, _ in figures) + 12
         across = len(figures) if widest * len(figures) <= rows.width else (len(figures) + 1) // 2
@@ -160,7 +155,6 @@ class ShownCard:
         rows.gap(LEADING * TEXT + 4)
 
     def _write_share(self, rows: Cursor) -> None:
-        """Write who flew how much, and how often the co-pilot stepped in."""
         card, canvas = self.card, rows.canvas
         if sentence := card.stepped_in_words:
             rows.gap(4)
@@ -191,7 +185,6 @@ def draw_lamps(canvas: Canvas, last: Point, medal: int) -> None:
 
 
 def _draw_ring(canvas: Canvas, place: Point) -> None:
-    """Draw the ring of a landing together: half the person's, half the network's."""
     for part in range(_RING_PARTS):
         angle = 2 * math.pi * (part + 0.5) / _RING_PARTS
         colour = HUMAN if math.cos(angle) < 0 else NET

@@ -16,10 +16,11 @@ from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
 from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.settings import Settings
 from game.flight import sharing
 from game.flight.credit import Credit
-from game.flight.flight import Flight, Recording
+from game.flight.flight import Flight, start_of
 from game.flight.flight_file import Entry, Record
 from game.flight.networks import Network, Policy, titled, who
 from game.flight.outcomes import OutcomeCard
@@ -214,7 +215,7 @@ class Race(_Beside):
         self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        flight = _as_begun(self._recording, seed, network)
+        flight = Flight(seed, network, **start_of(self._recording))
         flight.set_gravity(self._recording.gravity_at(0))
         return flight
 
@@ -239,7 +240,7 @@ class ContinuedFlight(Challenge):
         self.line = texts.FLY_ON_LINE.format(seconds=self._step / 60)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        return self._put(_as_begun(self._recording, seed, network))
+        return self._put(Flight(seed, network, **start_of(self._recording)))
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
         return Ghost(self._put(ReplayedFlight(self._recording)), self._name)
@@ -247,14 +248,6 @@ class ContinuedFlight(Challenge):
     def _put(self, flight: Flight) -> Flight:
         flight.put(self._moment, self._recording, self._step)
         return flight
-
-
-def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
-    """Return a flight at the start of a recorded one."""
-    return Flight(
-        seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, area=recording.area,
-        easing=recording.easing, leg=recording.leg,
-    )  # fmt: skip
 
 
 class FlownMission(Challenge):
@@ -326,7 +319,7 @@ class FlownMission(Challenge):
         much = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
         named = zip(much, (texts.MEDAL_LESS_FUEL, texts.MEDAL_LESS_TIME), strict=True)
         less = texts.AND.join(text.format(each) for each, text in named if each > 0)
-        return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=less)
+        return texts.MEDAL_NEXT.format(medal=capital(texts.MEDALS[medal + 1]), less=less)
 
 
 def _advice(env: LanderEnv) -> str:

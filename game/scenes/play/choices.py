@@ -13,8 +13,8 @@ from game.flight.handicap import HANDS
 from game.input.controls import Command
 from game.scenes.play.help import GUARDIAN, HELP, MODES, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
-from game.ui.panel_scene import PanelScene
-from game.ui.still_picture import StillPicture
+from game.ui.panel_scene import PanelScene, StillPicture
+from game.ui.rows import percent
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -48,7 +48,6 @@ class ChoicesScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the four choices, and what stands under More."""
         panel.title(texts.CHOICES_TITLE)
         if self._begun and self._free:
             panel.aside(texts.CHOICES_LATER)
@@ -78,46 +77,39 @@ class ChoicesScene(PanelScene):
 
     def _describe_starts(self, column: Column) -> None:
         settings, hands = self.context.settings, list(HANDS)
-        column.choice(
-            texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
-            lambda index: self._set("three_pads", bool(index)),
-        )  # fmt: skip
-        column.slider(
-            texts.CHOICES_LADDER, max(0.0, settings.rung), (0.0, float(TOP_RUNG)),
-            lambda rung: self._set("rung", round(rung)), step=1.0, figure=_rung, aside=texts.CHOICES_LADDER_HELP,
-        )  # fmt: skip
-        column.choice(
-            texts.CHOICES_HANDS, [texts.CHOICES_HANDS_WORDS[name] for name in hands],
-            hands.index(settings.hands) if settings.hands in hands else 0,
-            lambda index: self._set("hands", hands[index]),
-        )  # fmt: skip
+        pads = texts.CHOICES_PADS_WORDS
+        column.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), lambda at: self._set("three_pads", bool(at)))
+        rung, rungs, aside = max(0.0, settings.rung), (0.0, float(TOP_RUNG)), texts.CHOICES_LADDER_HELP
+        column.slider(texts.CHOICES_LADDER, rung, rungs, self._set_rung, step=1.0, figure=_rung, aside=aside)
+        words = [texts.CHOICES_HANDS_WORDS[name] for name in hands]
+        now = hands.index(settings.hands) if settings.hands in hands else 0
+        column.choice(texts.CHOICES_HANDS, words, now, lambda at: self._set("hands", hands[at]))
         column.aside(lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))
 
     def _describe_more(self, left: Column, right: Column) -> None:
-        """Add all else: the fine dial and its rule, gravity, time, and what follows from flights."""
-        helped, settings = self._helped, self.context.settings
-        words = HELP if helped.copilot == GUARDIAN else ["off"]
-        left.slider(
-            texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), partial(self._help, "assist"), step=0.1, figure=_percent,
-            ticks={HELP[word]: texts.HELP[word] for word in words},
-        )  # fmt: skip
+        helped = self._helped
+        ticks = {HELP[word]: texts.HELP[word] for word in (HELP if helped.copilot == GUARDIAN else ["off"])}
+        change = partial(self._help, "assist")
+        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), change, step=0.1, figure=percent, ticks=ticks)
         index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
         left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
         left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])
         if self._free:
-            left.slider(
-                texts.CHOICES_GRAVITY, settings.gravity, GRAVITY_SHARES,
-                lambda share: self._set("gravity", round(share, 2)), step=0.1, figure=_percent,
-                aside=texts.CHOICES_GRAVITY_HELP,
-            )  # fmt: skip
-        right.slider(
-            texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1,
-            figure=_percent, aside=texts.CHOICES_PACE_HELP,
-        )  # fmt: skip
+            self._share(left, "gravity", texts.CHOICES_GRAVITY, GRAVITY_SHARES, texts.CHOICES_GRAVITY_HELP)
+        self._share(right, "pace", texts.PACE, PACES, texts.CHOICES_PACE_HELP)
         key = self.context.controls.word(Command.MODE)
         self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))
         if self._free:
             self._toggle(right, "teach", *texts.CHOICES_TEACH)
+
+    def _set_rung(self, rung: float) -> None:
+        self._set("rung", round(rung))
+
+    def _share(self, column: Column, name: str, label: str, limits: tuple[float, float], aside: str) -> None:
+        value = getattr(self.context.settings, name)
+        column.slider(
+            label, value, limits, lambda to: self._set(name, round(to, 2)), step=0.1, figure=percent, aside=aside
+        )
 
     def _help(self, name: str, value: float | str) -> None:
         setattr(self._helped, name, round(value, 2) if isinstance(value, float) else value)
@@ -139,7 +131,6 @@ class ChoicesScene(PanelScene):
         self.context.apply_settings()
 
     def actions(self) -> Table:
-        """Change a choice, or go back; the key that opened this scene closes it too."""
         return [self.form.changes, self.form.goes_back(texts.HINT_BACK), Action(Command.CHOICES, Pop)]
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
@@ -148,7 +139,3 @@ class ChoicesScene(PanelScene):
 
 def _rung(rung: float) -> str:
     return texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP
-
-
-def _percent(share: float) -> str:
-    return texts.SOUND_SHARE.format(percent=round(100 * share))

@@ -96,7 +96,6 @@ class CopilotPanel:
         self._overridden = bool(decision.overridden[0])
 
     def box(self, canvas: Canvas) -> pygame.FRect:
-        """Return where it stands, in points of a canvas for text that flows."""
         view, (width, height) = canvas.view, _SIZE
         side = min(_SIDE, 0.03 * view.width)
         high = height + (_PADS_HIGH if self._likely else 0)
@@ -124,12 +123,10 @@ class CopilotPanel:
         if share is not None:
             y = top + _WHY + 104 + box.height - _SIZE[1]
             draw_share(canvas, left, y, _WIDTH, share, flew(network))
-            canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
         title, *lines = self.why
         canvas.text(title, (left, top), colour=NET if self._overridden else INK, room=_WIDTH)
-        canvas.explain((left, top - 16, _WIDTH, 62), texts.EXPLAIN_COPILOT_WHY)
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
@@ -163,10 +160,5 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
         allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
     elif asked != COAST:
         allowed = (1.0 - decision.assist) * float(np.ptp(points))
-    return QValues(
-        tuple(points.tolist()),
-        int(decision.action[0]),
-        None if asked == COAST else asked,
-        tuple(feasible.tolist()),
-        allowed,
-    )
+    wish = None if asked == COAST else asked
+    return QValues(tuple(points.tolist()), int(decision.action[0]), wish, tuple(feasible.tolist()), allowed)

@@ -64,7 +64,6 @@ class DailyStart(Challenge):
         self.opening = openings.get(self.bar, texts.DAILY_FIRST_BEGIN)
 
     def _look(self) -> None:
-        """See whether the next flight is the first attempt."""
         if self._past:
             self.bar = "day_past"
         elif self.line in self._days.attempts:
@@ -128,7 +127,6 @@ class DaysScene(PanelScene):
         self.enter()
 
     def enter(self) -> None:
-        """Read the attempts again."""
         self._attempts = Days(self.context.user_dir)
         if self._attempts.problem:
             self.context.note(self._attempts.problem)
@@ -145,7 +143,6 @@ class DaysScene(PanelScene):
         self._describe_day(self._beside)
 
     def _describe_day(self, column: Column) -> None:
-        """Add what there is to say of the chosen day, and to do with it."""
         attempt, today = self._attempt(self.chosen), self.chosen == self._today
         self._flown = self._attempts.first_flight(self.chosen)
         column.title(self._name(self.chosen), TITLE + 6)

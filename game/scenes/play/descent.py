@@ -98,7 +98,6 @@ class Descent(Challenge):
         self._clear()
 
     def word(self) -> None:
-        """Say which leg it is and what stands in its way, the points, and what to do."""
         self.title, self.again_hint, self.new_hint = texts.DESCENT_TITLE, texts.DESCENT_AGAIN, texts.DESCENT_NEW
         leg = leg_of(self._seed, self.start)
         kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg.kinds)
@@ -155,7 +154,6 @@ class Descent(Challenge):
         return ""
 
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
-        """Return the card of a run's end: how far, how many points, and whether it was the best."""
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
         values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
         figures = tuple((label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True))
@@ -181,7 +179,6 @@ class Descent(Challenge):
             canvas.surface.fill([round(dark * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
-        """Write above the craft what the landing has earned, over the tank that fills."""
         (x, y), half = craft, _WORDS / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
         rows = Cursor(x - half, y - _CLEAR, _WORDS, canvas.scale, canvas)

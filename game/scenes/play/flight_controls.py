@@ -11,11 +11,34 @@ from ai.lander.pilots import COAST
 from game.core.settings import Settings
 from game.input.analogue import Stick, pushed
 from game.input.controls import Controls, Held
-from game.input.mouse import MouseStick
 
 _FLOWN: Final = (Held.MAIN, Held.LEFT, Held.RIGHT)
 _PRESSES: Final = (pygame.KEYDOWN, pygame.CONTROLLERBUTTONDOWN, pygame.MOUSEBUTTONDOWN)
 FINE: Final = 0.25  # share of their thrust that jets give while the craft is turned finely
+_FIRE, _FINE, _TURN = 1, 2, 3  # buttons of the mouse
+
+
+class MouseStick:
+    """Buttons of the mouse: left fires, right turns towards the pointer, middle makes that turn fine."""
+
+    def __init__(self) -> None:
+        self.down: set[int] = set()  # buttons
+        self._x = 0.0
+
+    def take(self, event: pygame.event.Event) -> None:
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button in (_FIRE, _FINE, _TURN):
+            self.down.add(event.button)
+            self._x = event.pos[0]
+        elif event.type == pygame.MOUSEBUTTONUP:
+            self.down.discard(event.button)
+        elif event.type == pygame.MOUSEMOTION:
+            self._x = event.pos[0]
+        elif event.type == pygame.WINDOWFOCUSLOST:  # their release will not be reported
+            self.down.clear()
+
+    def side(self, craft: float) -> int:
+        """Return where a craft drawn at the x coordinate `craft`, in points, is to turn: -1 left, 1 right, or 0."""
+        return (-1 if self._x < craft else 1) if _TURN in self.down else 0
 
 
 class FlightControls:
@@ -34,19 +57,19 @@ class FlightControls:
     @property
     def mouse_flies(self) -> bool:
         """Whether a mouse button is held down."""
-        return self._mouse.holds
+        return bool(self._mouse.down)
 
     @property
     def switch(self) -> bool:
         """Whether the one switch is held: a key, a button, or the mouse's left one."""
-        return self._controls.switch or self._mouse.fires or self._switched
+        return self._controls.switch or _FIRE in self._mouse.down or self._switched
 
     def take(self, event: pygame.event.Event) -> None:
         """Process one event, its position in points."""
         self._mouse.take(event)
         if event.type in _PRESSES:
             self._tapped |= {held for held in _FLOWN if self._controls.holds(held, axes=False)}
-            self._tapped |= {Held.MAIN} if self._mouse.fires else set()
+            self._tapped |= {Held.MAIN} if _FIRE in self._mouse.down else set()
             self._switched |= self.switch
         if event.type == pygame.WINDOWFOCUSLOST:
             self.begin()
@@ -58,7 +81,7 @@ class FlightControls:
 
     def release(self) -> None:
         """Let go of the mouse too."""
-        self._mouse.release()
+        self._mouse.down.clear()
         self.begin()
 
     def read(self, craft: float) -> Stick:
@@ -67,7 +90,7 @@ class FlightControls:
             stick = Stick(3 * self.switch)
         else:
             main, side = self._thrust(craft)
-            if self._controls.holds(Held.FINE) or self._mouse.fine:
+            if self._controls.holds(Held.FINE) or _FINE in self._mouse.down:
                 side *= FINE
             stick = pushed(main, side, self._shares)
             self._shares = stick.shares or full(stick.action)
@@ -80,10 +103,10 @@ class FlightControls:
         controls, analogue = self._controls, self._settings.analogue
         throttle, stick = controls.shares if analogue else (0.0, 0.0)
         held = {each for each in _FLOWN if controls.holds(each, axes=not analogue)} | self._tapped
-        main = float(Held.MAIN in held or self._mouse.fires) or throttle
+        main = float(Held.MAIN in held or _FIRE in self._mouse.down) or throttle
         side = ((Held.RIGHT in held) - (Held.LEFT in held)) or stick or self._mouse.side(craft)
         if self._settings.toggle_thrust:  # each new press switches the main engine on or off
-            pressed = controls.main or Held.MAIN in held or self._mouse.fires
+            pressed = controls.main or Held.MAIN in held or _FIRE in self._mouse.down
             self._latched ^= pressed and not self._held_before
             self._held_before = pressed
             main = float(self._latched)

@@ -19,7 +19,7 @@ from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.flight.credit import Credit, eased
 from game.flight.demonstrations import add_demonstration
-from game.flight.flight import Flight, StickHolder
+from game.flight.flight import Flight, StickHolder, start_of
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
 from game.flight.handicap import OWN
@@ -115,7 +115,7 @@ class FlownFlight:
     def _shadow(self) -> Flight:
         """Return the network's own flight from the same start, flown unseen: the card tells its score."""
         start = self.flight.recording
-        shadow = Flight(start.seed, self._policy, start.spawn, pads=start.pads, easing=start.easing)
+        shadow = Flight(start.seed, self._policy, **start_of(start))
         shadow.hand_over()
         return shadow
 
@@ -130,8 +130,8 @@ class FlownFlight:
         return self.waiting and self._held_before and not self.flight.over
 
     def set_calm(self, calm: bool) -> None:
-        """Set whether motion is reduced."""
-        self.scenery.calm = self.ending.calm = calm
+        self.ending.calm = calm
+        self.scenery.set_calm(calm)
         if calm:
             self.pace.hurry()
 
@@ -195,7 +195,6 @@ class FlownFlight:
         self._help()
 
     def follow(self) -> None:
-        """Follow the flight's step."""
         flight = self.flight
         if self.ghost:
             self.ghost.step()
@@ -245,7 +244,6 @@ class FlownFlight:
     # The end
 
     def reword(self) -> None:
-        """Say anew what is kept of words, in another language."""
         fresh = flight_readouts(self.flight.env)
         for name, readout in self._readouts.items():
             self._readouts[name] = replace(readout, label=fresh[name].label, what=fresh[name].what)
@@ -258,12 +256,9 @@ class FlownFlight:
         flight, credit, ending = self.flight, self.credit, self.ending
         ending.whole = self.scenery.shot_of(self.path.places)
         unranked = rung_of(flight) is not None or self.challenge.name
-        card = outcome_card(flight.env, flight.share)
-        card = replace(
-            card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason),
-            assists=credit.assists, who=credit.who, place=self.path.clear_place(ending.whole.view(1.0)),
-            compared=self._compared(self.best[1]),
-        )  # fmt: skip
+        card, place = outcome_card(flight.env, flight.share), self.path.clear_place(ending.whole.view(1.0))
+        card = replace(card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason))
+        card = replace(card, assists=credit.assists, who=credit.who, place=place, compared=self._compared(self.best[1]))
         if credit.helped:
             chance = None if card.good else self._last_chance
             while chance and not chance.known:

@@ -45,11 +45,9 @@ class Ghost:
 
     @property
     def name(self) -> str:
-        """What it is called."""
         return self._named if isinstance(self._named, str) else self._named()
 
     def step(self) -> None:
-        """Advance the rival by 1/60 s."""
         flight = self.flight
         was_over = flight.over
         flight.step(0)
@@ -63,7 +61,6 @@ class Ghost:
         return RivalOutcome(self.name, _result(yours, env), figures)
 
     def draw_way(self, canvas: Canvas, view: View) -> None:
-        """Draw the ghost's path so far, below the text at the top."""
         self._trail.draw(canvas, view, 0, ClearArea.head)
 
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:

@@ -20,7 +20,7 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEX
 from game.explain.readouts import Lamp
 from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
-from game.ui.hints import Hint, HintRow, flight_hints
+from game.ui.hints import Hint, HintRow, flight_hints, split
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -96,13 +96,7 @@ class _Layout:
         return Cursor(left, y, width, self.canvas.scale, self.canvas if self.drawn else None, size=size, colour=colour)
 
     def key_rows(self) -> list[HintRow]:
-        rows: list[list[Hint]] = []
-        for hint in self.head.hints:
-            if rows and HintRow([*rows[-1], hint], (0, 0)).width(self.canvas) <= self.beside:
-                rows[-1].append(hint)
-            else:
-                rows.append([hint])
-        right = self.canvas.view.right - self.side
+        rows, right = split(self.head.hints, self.canvas, self.beside), self.canvas.view.right - self.side
         return [HintRow(row, (right, _TOP + 16 + _LINE * number), from_right=True) for number, row in enumerate(rows)]
 
     def write(self) -> float:
@@ -117,7 +111,6 @@ class _Layout:
         return max(self._middle(_TOP if alone else max(keys, names) + 8, reach), keys, names)
 
     def _names(self, top: float) -> float:
-        """Write what is flown, at the left; return the lower end, 0 if there is nothing."""
         head = self.head
         if not (head.caption or head.name or head.aside):
             return 0.0
@@ -128,15 +121,12 @@ class _Layout:
                 draw_ladder(self.canvas, end, cursor.baseline, head.rung)
             cursor.text(head.caption)
         if head.name:
-            name = cursor.in_style(TEXT, INK)
-            name.text(head.name)
-            cursor.y = name.y
+            cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
             cursor.text(words)
         return cursor.y
 
     def _middle(self, top: float, beside: float) -> float:
-        """Write the sentence, and what stands below it; return the lower end."""
         head, view, canvas = self.head, self.canvas.view, self.canvas
         room = min(_WIDEST, view.width - 2 * max(self.side + 24, beside + 24))
         cursor = self.cursor(view.centerx - room / 2, top, room, _SENTENCE)
@@ -163,10 +153,8 @@ class _Layout:
     def _write_sentence(self, cursor: Cursor) -> None:
         head, canvas = self.head, self.canvas
         colour = canvas.palette.warn if head.warns else INK
-        words = cursor.in_style(colour=colour)
         top, width = cursor.y, min(cursor.measured(head.sentence), cursor.width)
-        words.text(head.sentence, "centre")
-        cursor.y = words.y
+        cursor.styled(head.sentence, colour=colour, align="centre")
         if self.drawn and head.lamp:
             lamp: Lamp = ("triangle", colour, 0.5) if head.warns else head.lamp
             shape, tint, glow = lamp
@@ -175,7 +163,6 @@ class _Layout:
             canvas.marker(shape, spot, 8 if shape == "circle" else 11, tint)
 
     def _write_paths(self, cursor: Cursor) -> None:
-        """Write the legend of the paths, side by side where there is room."""
         small = cursor.in_style(SMALL, MUTE)
         widths = [small.measured(words) + _DOTS for words, _ in self.head.paths]
         whole = sum(widths) + _APART * (len(widths) - 1)
@@ -227,7 +214,6 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
 
 
 def _asides(flown: FlownFlight) -> list[str]:
-    """Say what else is to be known of the flight."""
     flight, challenge, credit = flown.flight, flown.challenge, flown.credit
     off = flown.helps and flown.helped.assist == 0 < flown.context.settings.assist
     lines = [

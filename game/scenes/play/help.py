@@ -10,6 +10,7 @@ from game.core import texts
 from game.core.settings import Settings
 from game.drawing.tokens import INK, MUTE, NET, SMALL
 from game.input.controls import Command, translate
+from game.ui.rows import percent
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
@@ -86,9 +87,7 @@ class HelpWords:
         return found
 
     def _label(self, word: str) -> str:
-        if word != OTHER:
-            return texts.HELP[word]
-        return texts.SOUND_SHARE.format(percent=round(100 * self._settings.assist))
+        return percent(self._settings.assist) if word == OTHER else texts.HELP[word]
 
     def draw(self, canvas: Canvas, middle: float, y: float, says: Now) -> None:
         """Draw the words, with a line under the one that is chosen; `says` tells what that does now."""

@@ -41,7 +41,6 @@ class Interventions:
         self._late = 0  # decisions in a row, up to it, for which a guardian had not looked ahead in time
 
     def follow(self, flight: Flight) -> None:
-        """Update after a step."""
         guards, seen = flight.shared and flight.guarded, self.word
         guarded = flight.decision if guards else None
         assist = guarded.assist if guarded else 0.0

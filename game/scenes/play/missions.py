@@ -45,7 +45,6 @@ class MissionsScene(PanelScene):
         self.enter()
 
     def enter(self) -> None:
-        """Read what has been flown."""
         self._records = Records(self.context.user_dir)
         entries = self._records.entries()
         self._best = _best_by_course(entries)
@@ -59,7 +58,6 @@ class MissionsScene(PanelScene):
 
     @property
     def chosen(self) -> str:
-        """Name of the chosen mission."""
         return _NAMES[self._index]
 
     # Rows
@@ -68,10 +66,10 @@ class MissionsScene(PanelScene):
         panel.title(texts.MISSIONS_TITLE)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
+        rows, first, fly = [self._row(name) for name in _NAMES], self._list.first if self._list else 0, self._fly
         self._list = left.listing(
-            [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, index=self._index,
-            first=self._list.first if self._list else 0, on_choose=self._choose, columns=(0.0,), pitch=_PITCH,
-        )  # fmt: skip
+            rows, lambda _: fly(), around=_AROUND, index=self._index, first=first, on_choose=self._choose, pitch=_PITCH
+        )
         right.title(lambda: texts.MISSIONS[self.chosen][0], 28.0)
         right.text(lambda: texts.MISSIONS[self.chosen][1])
         right.gap(10)
@@ -82,12 +80,9 @@ class MissionsScene(PanelScene):
         right.button(texts.MISSION_FLY, self._fly, size=TITLE, colour=INK)
 
     def _write_best(self, cursor: Cursor) -> None:
-        """Write the player's best result, if there is one."""
         if best := self._best.get(self.chosen):
             words = texts.MISSION_BEST.format(fuel=tenths(best.fuel), seconds=tenths(best.seconds), count=best.score)
-            small = cursor.in_style(SMALL, HUMAN)
-            small.text(words)
-            cursor.y = small.y
+            cursor.styled(words, SMALL, HUMAN)
 
     def _choose(self, index: int) -> None:
         self._index = index
@@ -113,7 +108,6 @@ class MissionsScene(PanelScene):
         cursor.y = max(beside.y, cursor.y + LEADING * cursor.size) + 6
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the rows, and the lamps of the medals in the list."""
         super().draw(canvas, alpha)
         assert self._list is not None
         for row, name in enumerate(_NAMES):

@@ -17,8 +17,7 @@ from game.input.controls import Command
 from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Table
 from game.ui.hints import HintRow, hint_lines
-from game.ui.panel_scene import PanelScene
-from game.ui.still_picture import StillPicture
+from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -67,10 +66,8 @@ class PauseScene(PanelScene):
         self.describe_below(panel)
         panel.gap(8)
         retry = [(self._retry_word or texts.PAUSE_RETRY, self._begin_anew)] if self._retry else []
-        rows: list[tuple[str, OnPress]] = [
-            (texts.PAUSE_RESUME, Pop), *retry, *self._more(),
-            (texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2)),
-        ]  # fmt: skip
+        rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
+        rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
         for label, press in rows:
             panel.button(label, press, size=_WORD, weight="light", colour=INK)
 
@@ -109,31 +106,26 @@ class FlightPauseScene(PauseScene):
             panel.aside(words)
 
     def actions(self) -> Table:
-        """Choose, resume, or have all explained."""
         return [*super().actions(), self.explained.action()]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
-        """Fly the six futures further."""
         self._flight.flown.think(_AHEAD)
         self.explained.update()
         return super().update()
 
     def room(self, canvas: Canvas) -> pygame.FRect:
-        """Return the room of the entries, above the hints and the read-outs."""
         room = super().room(canvas)
         return pygame.FRect(room.left, 28, room.width, min(row.top for row in self.hint_rows(canvas)) - 40)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        """Return the hints above the read-outs."""
         low = READOUTS * canvas.whole.scale / canvas.scale + 20
         left, _ = self._between(canvas)
         return hint_lines(self.hints, canvas, (left, canvas.view.bottom - low), self.most)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the flight below, and the ground of the entries."""
         self._flight.flown.draw(canvas, 1.0, Head(), whole=True)
         low = max(row.position[1] for row in self.hint_rows(canvas)) + 12
         canvas.panel((self.panel.box.left - 24, 12, self.panel.box.width + 48, low - 12), _COVER)

@@ -85,8 +85,7 @@ class PlayScene(Scene):
         """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
         if self._elsewhere != self._loaded_for:
-            self._load_network()
-            self.flown.change_network(self.network)
+            self._change_network()
         self.flown.hang()
         other = self.challenge.eases and eased(self._settings) != self.flight.recording.easing
         if not (self.flown.begun or self.flight.over) and (other or self.challenge.chosen() != self._begun_with):
@@ -113,7 +112,8 @@ class PlayScene(Scene):
         if event.type in _INTERRUPTS:
             self.flown.hang()
         if self.flown.helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
-            self._name_what_lacks()
+            if self.flown.helped.assist > 0 and (lack := self._lack):
+                self.context.note(lack)
             return None
         self._stick.take(event)
         if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
@@ -161,12 +161,9 @@ class PlayScene(Scene):
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
         explain = [Action(key, self.show_thinking) for key in (pygame.K_F1, Command.MODE)]
         if self.ending.shown == 0:
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), *explain]
+            return [*flight_actions(self), Action(Command.CONFIRM, self.ending.hurry), *explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
-        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, *explain]
-
-    def _flight_actions(self) -> list[Action]:
-        return flight_actions(self)
+        return [*self._card_actions(), *flight_actions(self), Action(Command.CONFIRM, self._go_on), *space, *explain]
 
     def _card_actions(self) -> list[Action]:
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
@@ -201,7 +198,6 @@ class PlayScene(Scene):
         return Push(QuestionDialog(self, *stake, answers))
 
     def show_thinking(self) -> None:
-        """Show what the network thinks, or no longer."""
         self._settings.show_thinking = not self._settings.show_thinking
         self.context.apply_settings()
 
@@ -211,11 +207,6 @@ class PlayScene(Scene):
         elif self.flight.network is None and not self.flight.over:
             problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
-
-    def _name_what_lacks(self) -> None:
-        """Tell the player why the dial has no effect, where it has none."""
-        if self.flown.helped.assist > 0 and (lack := self._lack):
-            self.context.note(lack)
 
     @property
     def _lack(self) -> str:
@@ -255,16 +246,17 @@ class PlayScene(Scene):
         return push("choices", self, begun=begun, free=self.challenge.free, helped=helped, lack=self._lack)
 
     def choose_network(self, name: str) -> None:
-        """Change the network to hand over to, also during a flight."""
         self._settings.model = name
         if self.context.pilot:
             self.context.pilot.chosen = False
         self.context.apply_settings()
-        self._load_network()
-        self.flown.change_network(self.network)
+        self._change_network()
 
     def _choose_own(self, path: Path | None) -> None:
         own.take(self.context, path)
+        self._change_network()
+
+    def _change_network(self) -> None:
         self._load_network()
         self.flown.change_network(self.network)
 
@@ -282,7 +274,7 @@ class PlayScene(Scene):
     @property
     def _head(self) -> Head:
         named = self._settings.show_hints or self._controls.mouse_in_use  # for the mouse, they are what it presses
-        hints = hints_of(self._flight_actions(), self._controls) if named else []
+        hints = hints_of(flight_actions(self), self._controls) if named else []
         return head_of(self.flown, hints, whole=False)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -298,20 +290,17 @@ class PlayScene(Scene):
 
     @property
     def waiting(self) -> bool:
-        """Whether the craft still hangs until the pilot's first touch."""
         return self.flown.waiting
 
     @property
     def _elsewhere(self) -> bool:
-        """Whether the next flight is flown where it is not as on the moon."""
         return self.challenge.elsewhere or (self.challenge.free and self._settings.gravity != 1)
 
     def _load_network(self) -> None:
         context, self._loaded_for = self.context, self._elsewhere
         settings = context.settings
-        self.network = own.flying(context) or networks.chosen(
-            context.models_dir, context.user_dir, settings.model, self._elsewhere
-        )
+        shipped, mine = context.models_dir, context.user_dir
+        self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._elsewhere)
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
         elif self.network.stands_in:
@@ -330,7 +319,6 @@ class PlayScene(Scene):
         self._begin(int(self.context.rng.integers(2**31)))
 
     def retry(self) -> None:
-        """Fly again from the same start."""
         self._begin(self.flight.recording.seed, self.flight.recording.spawn)
 
     def _go_on(self) -> Transition | None:

@@ -37,11 +37,9 @@ class Sitting:
         self._crashes, self.offers = 0, False
 
     def best_here(self, flight: Flight) -> int:
-        """Return the player's best score from the start of a flight, 0 for none."""
         return self._best_here.get(_start(flight), 0)
 
     def add(self, flown: FlownFlight) -> None:
-        """Take note of a finished flight."""
         landed = flown.flight.outcome is Outcome.LANDED
         counts = flown.credit.counts and landed and flown.challenge.kept
         self.first = counts and not self._landed_before

@@ -115,7 +115,6 @@ class Tutorial(Challenge):
 
     @property
     def lesson(self) -> Lesson:
-        """The current lesson."""
         return self._lessons[self._number]
 
     def _begin_lesson(self, number: int) -> None:
@@ -211,7 +210,6 @@ class Tutorial(Challenge):
         return self.lesson.name == "take_back" and by_network
 
     def _reason(self, flight: Flight) -> str:
-        """Return the reason why the lesson restarts."""
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
         by_network = flight.hand is StickHolder.NETWORK

@@ -12,6 +12,7 @@ from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import COAST
 from ai.lander.sensing import near_edges
 from game.core import texts
+from game.core.catalogue import capital
 from game.explain.landings import Landing, Landings
 from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.flight import networks
@@ -188,7 +189,7 @@ def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:
     else:
         key = "looking" if Landing.UNKNOWN in landings.after else "none"
     asked, flown = (texts.said(ACTION_NAMES[each]) for each in (action, landings.flown))
-    words = {"asked": asked.capitalize(), "flown": flown.capitalize(), "seconds": f"{landings.seconds:.1f}"}
+    words = {"asked": capital(asked), "flown": capital(flown), "seconds": f"{landings.seconds:.1f}"}
     first, second = (line.format(**words) for line in texts.GUARDIAN_WHY[key])
     return texts.COPILOT_PANEL_WHY[source.name], first, second
 
@@ -205,7 +206,7 @@ def why_by_values(decision: SharedDecision, pad: int) -> Why:
     if asked == COAST:
         return title, *texts.COPILOT_PANEL_HANDS_OFF
     loss = float(points.max() - points[asked])
-    name = texts.said(ACTION_NAMES[asked]).capitalize()
+    name = capital(texts.said(ACTION_NAMES[asked]))
     template = texts.COPILOT_PANEL_BELOW if loss >= _LEAST_LOSS else texts.COPILOT_PANEL_SAME
     flown = texts.COPILOT_PANEL_ENOUGH if source is ActionSource.PILOT else texts.COPILOT_PANEL_CHANGED
     action = texts.said(ACTION_NAMES[int(decision.action[0])])

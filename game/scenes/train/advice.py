@@ -7,7 +7,7 @@ from typing import Any
 
 from ai.explain.inspection import NetworkHealth
 from ai.training.config import Config
-from ai.training.hints import Adviser, Hint
+from ai.training.hints import Adviser
 from game.core import texts
 from game.drawing.tokens import HUMAN, SMALL
 from game.training.run import TrainingRun
@@ -27,29 +27,28 @@ class Advice:
         self._run, self._turn = run, turn
         self.adviser = Adviser(Config())
         self._came_from: int | None = None  # the moment at which a remedy went back, in decisions
-        self._hint: Hint | None = None
         self.done = ""
         self._quiet = False
 
     @property
     def shown(self) -> bool:
         """Whether there is anything to show."""
-        return not self._quiet and (self._hint is not None or self.adviser.can_undo)
+        return not self._quiet and (self.adviser.shown is not None or self.adviser.can_undo)
 
     @property
     def key(self) -> Hashable:
         """What decides which rows there are."""
-        return self.shown, self._hint
+        return self.shown, self.adviser.shown
 
     @property
     def hint(self) -> str:
         """Name of the hint that is shown; empty without one."""
-        return self._hint.name if self._hint and self.shown else ""
+        return self.adviser.shown.name if self.adviser.shown and self.shown else ""
 
     def follow(self, health: NetworkHealth) -> None:
         """Diagnose the run again; call it when there is news."""
         run = self._run
-        self._hint = self.adviser.advise(run.history, run.config, health.dead_share, health.clipped_share)
+        self.adviser.advise(run.history, run.config, health.dead_share, health.clipped_share)
 
     def silence(self, quiet: bool) -> None:
         """Hide the hint while other changes wait to be applied or undone: one question at a time."""
@@ -60,12 +59,10 @@ class Advice:
     def clear(self) -> None:
         """Reset for another run."""
         self.adviser.reset()
-        self.adviser.undo()
-        self._hint = None
 
     def describe(self, column: Column) -> None:
         """Add the hint, or what its remedy did, with the words that answer it."""
-        hint = self._hint
+        hint = self.adviser.shown
         column.caption(texts.HINT_TITLE if hint else texts.HINT_APPLIED)
         said = texts.HINTS[hint.name].format(what=format_changes(hint.remedy)) if hint else self.done
         column.text(said, size=SMALL, colour=HUMAN)
@@ -73,11 +70,11 @@ class Advice:
             column.words([(texts.HINT_UNDO, self._undo), (texts.HINT_KEEP, self._keep)])
             return
         apply = [(texts.HINT_APPLY, self._apply)] if hint.remedy or hint.back_to is not None else []
-        column.words([*apply, (texts.HINT_DISMISS, self._dismiss)])
+        column.words([*apply, (texts.HINT_DISMISS, self.adviser.dismiss)])
 
     def _apply(self) -> None:
-        assert self._hint is not None
-        back_to = self._hint.back_to
+        assert self.adviser.shown is not None
+        back_to = self.adviser.shown.back_to
         remedy = self.adviser.apply(went_back=back_to is not None)
         went = [] if back_to is None else [texts.HINT_WENT_BACK.format(count=back_to)]
         self.done = ", ".join([*([format_changes(remedy)] if remedy else []), *went])
@@ -88,18 +85,12 @@ class Advice:
         self._set(self.adviser.undo(), self._came_from)
 
     def _set(self, values: Any, back_to: int | None) -> None:
-        """Turn knobs, return to a checkpoint if there is one, and close the hint."""
+        """Turn knobs, and return to a checkpoint if there is one."""
         for name, value in values.items():
             self._turn(name, value)
         if back_to is not None and (checkpoint := self._run.history.checkpoint_at(back_to)) is not None:
             self._run.ask("restore", checkpoint.decisions)
-        self._hint = None
-
-    def _dismiss(self) -> None:
-        self.adviser.dismiss()
-        self._hint = None
 
     def _keep(self) -> None:
-        """Keep the remedy, and close the hint."""
+        """Keep the remedy."""
         self.adviser.undo()
-        self._hint = None

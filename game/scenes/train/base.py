@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import pygame
 
@@ -14,20 +14,16 @@ from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.cursor import Cursor
-from game.drawing.tokens import HUMAN, INK, MUTE, PANEL, SMALL, TITLE
+from game.drawing.tokens import HUMAN, INK, PANEL, SMALL, TITLE
 from game.explain.explained import Explained
-from game.explain.readouts import rate_colour
 from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.layout import Layout, layout
+from game.scenes.train.layout import Layout, TrainingStatus, layout
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Part
-from game.ui.form_scene import FormScene
-from game.ui.hints import HintRow
+from game.ui.form import FormScene, Part
 from game.ui.panel import Column, Panel
 from game.ui.widget import Widget
 
@@ -38,9 +34,6 @@ if TYPE_CHECKING:
     from game.ui.rows import ButtonRow
 
 _MARGIN: Final = 32.0  # of the panel
-_TITLE: Final = (24.0, 16.0)  # corner of the title over the display
-_WIDEST: Final = 372.0
-_FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
 _LEAST: Final = 80.0  # points of height for the title above the charts
 _FOOT: Final = 0.8  # share of the panel that its foot takes at most
 MORE: Final = "more"  # what a player can open: the words for all else, every chart, every knob, the network
@@ -49,13 +42,7 @@ KNOBS: Final = "knobs"
 INSIDE: Final = "inside"
 
 
-class TrainingStatus(NamedTuple):
-    """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
-
-    title: str
-    line: str
-    figure: str
-    words: str
+Pointer = tuple[Widget, Callable[[], pygame.typing.RectLike]]
 
 
 class TrainingScene(FormScene, ABC):
@@ -93,7 +80,6 @@ class TrainingScene(FormScene, ABC):
         try:
             self.left = run.collection.claim()
             self._build()
-            self._show_opened()
             self._lay()
             self.form.focus(self.start_button)
             self.lay_out()
@@ -141,8 +127,8 @@ class TrainingScene(FormScene, ABC):
         """Move what is seen of the run to its boxes."""
 
     @abstractmethod
-    def _pointers(self) -> list[Widget]:
-        """Return new widgets for what is seen of the run."""
+    def _pointers(self) -> list[Pointer]:
+        """Return new widgets for what is seen of the run, each with what gives its box once all is placed."""
 
     @abstractmethod
     def _describe_more(self, column: Column) -> None:
@@ -166,15 +152,11 @@ class TrainingScene(FormScene, ABC):
         """Open a part, or close it; it stays so for this player."""
         self._settings.open(name)
         self.context.apply_settings()
-        self._show_opened()
-
-    def _show_opened(self) -> None:
-        self.knobs.every = self.opened(KNOBS)
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
-        words = {MORE: texts.TRAIN_MORE, CHARTS: texts.TRAIN_MORE_CHARTS, KNOBS: texts.TRAIN_MORE_KNOBS,
-                 INSIDE: texts.TRAIN_LOOK}  # fmt: skip
+        words = {MORE: texts.TRAIN_MORE, INSIDE: texts.TRAIN_LOOK}
+        words |= {CHARTS: texts.TRAIN_MORE_CHARTS, KNOBS: texts.TRAIN_MORE_KNOBS}
         column.button(words[name][self.opened(name)], partial(self.open, name)).pad = 3.0
 
     # Rows
@@ -184,11 +166,12 @@ class TrainingScene(FormScene, ABC):
         form, before, focused = self.form, list(self.form.widgets), self.form.focused
         scrolled = self.panel.scrolled if self._laid is not None else 0.0
         body, foot = Part(form), Part(form)
+        self.knobs.every = self.opened(KNOBS)
         self.panel, self._foot = Panel(body), Panel(foot)
-        pointers = self._pointers()
+        self._pointed = self._pointers()
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        form.replace(before, [*pointers, *body.widgets, *foot.widgets])
+        form.replace(before, [*(widget for widget, _ in self._pointed), *body.widgets, *foot.widgets])
         if focused is not None and focused not in form.widgets:
             alike = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)
             form.focus(next(alike, self.start_button))
@@ -233,12 +216,14 @@ class TrainingScene(FormScene, ABC):
             self._layout = place
             self.charts.place(place.charts)
             self._place(place)
-        box = place.panel.inflate(-2 * _MARGIN, -2 * 20.0)
-        room = pygame.FRect(box.left, box.top, box.width, _FOOT * box.height)
+            for widget, box in self._pointed:
+                widget.relative_rect = widget.rect = pygame.Rect(box())
+        panel = place.panel.inflate(-2 * _MARGIN, -2 * 20.0)
+        room = pygame.FRect(panel.left, panel.top, panel.width, _FOOT * panel.height)
         self._foot.lay_out(room, canvas.scale)
         height = min(self._foot.height, room.height)
-        self._foot.lay_out(pygame.FRect(box.left, box.bottom - height, box.width, height + 1), canvas.scale)
-        self.panel.lay_out(pygame.FRect(box.left, box.top, box.width, box.height - height - 10), canvas.scale)
+        self._foot.lay_out(pygame.FRect(panel.left, panel.bottom - height, panel.width, height + 1), canvas.scale)
+        self.panel.lay_out(pygame.FRect(panel.topleft, (panel.width, panel.height - height - 10)), canvas.scale)
 
     # Events and time
 
@@ -381,30 +366,6 @@ class TrainingScene(FormScene, ABC):
         self.explained.draw(canvas)
 
     def draw_title(self, canvas: Canvas) -> None:
-        """Draw the title over the display, and the share that succeeds, large."""
-        (left, top), status = _TITLE, self._status
+        """Draw what the run has come to, over the display."""
         assert self._layout is not None
-        width = min(_WIDEST, self._layout.display.width - 2 * left)
-        cursor = Cursor(left + 16, top + 10, width - 32, canvas.scale)
-        self._write_title(cursor, status)
-        box = (left, top, width, cursor.y - top + 8)
-        canvas.panel(box, 1.0)
-        self._write_title(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), status)
-        HintRow(self.hints[:1], (left + width - 16, top + 30), from_right=True).draw(canvas)
-
-    def _write_title(self, cursor: Cursor, status: TrainingStatus) -> None:
-        head = cursor.in_style(TITLE)
-        head.text(status.title)
-        cursor.y = head.y
-        if status.figure:
-            assert self._layout is not None
-            size = min(max(_FIGURE[2] * self._layout.swarm.height, _FIGURE[0]), _FIGURE[1])
-            wide = cursor.in_style(size, weight="light").measured(status.figure, tabular=True)
-            if canvas := cursor.canvas:
-                place = cursor.left - 2, cursor.y + 0.92 * size
-                colour = rate_colour(canvas, float(status.figure))
-                canvas.text(status.figure, place, size=size, weight="light", tabular=True, colour=colour)
-                canvas.text(status.words, (cursor.left + wide + 10, place[1]), size=SMALL, colour=MUTE,
-                            room=cursor.width - wide - 10)  # fmt: skip
-            cursor.gap(1.08 * size)
-        cursor.aside(status.line)
+        self._status.draw(canvas, self._layout, self.hints[:1])

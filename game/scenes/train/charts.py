@@ -20,8 +20,8 @@ from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
 from game.core import texts
+from game.drawing import prose
 from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.record import EarlierRun
 from game.training.run_settings import figure, format_changes, label
@@ -158,7 +158,7 @@ class TrainingCharts(Charts):
 
     """
 
-    def __init__(self, kinds: Mapping[str, ChartKind] = LANDER_CHARTS, *, more: bool = False) -> None:
+    def __init__(self, kinds: Mapping[str, ChartKind] = LANDER_CHARTS) -> None:
         self._kinds = kinds
         self._all = [
             Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
@@ -167,7 +167,7 @@ class TrainingCharts(Charts):
         ]  # fmt: skip
         super().__init__(self._all)
         self._turn = self.axis = 0
-        self.show(more=more)
+        self.show(more=False)
         self.clear()
 
     def show(self, *, more: bool) -> None:
@@ -209,8 +209,8 @@ class TrainingCharts(Charts):
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
-        contents = (len(history), len(history.validations), shown, self.axis, self.zoom.shown,
-                len(history.setting_changes))  # fmt: skip
+        counts = len(history), len(history.validations), len(history.setting_changes)
+        contents = counts, shown, self.axis, self.zoom.shown
         if self._contents[number] == contents:
             return False
         self._contents[number] = contents
@@ -284,15 +284,12 @@ class TrainingCharts(Charts):
             y = box.bottom + _DROP
             lines = chart.painted_caption.split("\n")
             for line in lines if box.width >= _WIDE else lines[:1]:
-                y = draw_wrapped(canvas, line, (box.x, y), box.width - 8, size=_SIZE, colour=MUTE, leading=_LEADING,
-                                 most=2)  # fmt: skip
+                for row in prose.lines(line, _SIZE, "regular", box.width - 8, canvas.scale)[:2]:
+                    canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
+                    y += _LEADING
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
-            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
+            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)
-
-
-def _latest(chart: Chart) -> str:
-    return texts.EXPLAIN_CHART_NOW.format(value=chart.latest)
 
 
 def _written(form: str, value: float) -> str:

@@ -14,25 +14,24 @@ from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
 from game.core.scene import Transition, push
-from game.digits.filter_film import FilterFilm
-from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
-from game.scenes.train.base import TrainingScene, TrainingStatus
+from game.scenes.train.base import Pointer, TrainingScene
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
+from game.scenes.train.digit_views import ConfusionMatrix, FilterFilm
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.layout import Layout
+from game.scenes.train.layout import Layout, TrainingStatus
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
+from game.training.run_settings import RunSettings
 from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import Widget
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -73,9 +72,10 @@ class DigitTrainingScene(TrainingScene):
         self.charts = TrainingCharts(DIGIT_CHARTS)
         self.lessons = LessonDoor(self.run, self.context.note)
         change = partial(self.run.ask, "change")
-        self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
+        settings = RunSettings(DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
+        self.knobs = KnobsPanel(self.form, settings)
         self.film = FilterFilm(self.charts)
-        self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
+        self.matrix = ConfusionMatrix((0, 0, 100, 100))
 
     # Rows
 
@@ -89,10 +89,9 @@ class DigitTrainingScene(TrainingScene):
         history, scores = run.history, run.history.validations
         line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
         if len(history):
-            line = texts.DIGIT_RUN_FIGURES.format(
-                epoch=history["epoch"][-1], epochs=run.config.epochs, seconds=history["seconds"][-1],
-                rate=history["images_per_second"][-1],
-            )  # fmt: skip
+            epoch, seconds, rate = (history[name][-1] for name in ("epoch", "seconds", "images_per_second"))
+            figures = {"epoch": epoch, "epochs": run.config.epochs, "seconds": seconds, "rate": rate}
+            line = texts.DIGIT_RUN_FIGURES.format(**figures)
         part, words = scores[-1].success if scores else None, texts.DIGIT_RUN_READ
         if run.test is not None:
             if run.kept_epoch is not None:
@@ -119,29 +118,26 @@ class DigitTrainingScene(TrainingScene):
         """Whether something was read already, and there is room to read what."""
         return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
-    def _pointers(self) -> list[Widget]:
-        manager, nowhere = self.form.manager, (0, 0, 1, 1)
-        self._over_charts: list[Widget] = [VirtualPointer(manager, nowhere, self.charts.follow)]
+    def _pointers(self) -> list[Pointer]:
+        nowhere, charts = (0, 0, 1, 1), self.charts
+        pointers: list[Pointer] = [(VirtualPointer(nowhere, charts.follow), lambda: charts.box)]
         if self.view:
-            self._over_charts.append(
-                Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
-            )
+            scrubber = Scrubber(charts, self.film.choose, lambda: None, charts.zoom_by)
+            pointers.append((scrubber, lambda: charts.box))
         elif self._shows_misread:
-            if self.matrix not in self.form.widgets:
-                before, self.matrix = self.matrix, ConfusionMatrix(manager, self.matrix.box)
+            if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone
+                before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
                 self.matrix.set(before.confusion)
                 self.matrix.cell = before.cell
-            return [*self._over_charts, self.matrix]
-        return self._over_charts
+            pointers.append((self.matrix, lambda: self._matrix))
+        return pointers
 
     def _place(self, place: Layout) -> None:
-        for widget in self._over_charts:
-            widget.relative_rect = widget.rect = pygame.Rect(self.charts.box)
         area = place.swarm
         self._area = pygame.FRect(_LEFT, area.top + _HEAD, area.width - 2 * _LEFT, max(area.height - _HEAD - 8, 60))
         side = min(self._area.height - _NUMBERS, _LARGEST, self._area.width - _NUMBERS)
         matrix = pygame.Rect(round(_LEFT + _NUMBERS), round(self._area.top + _NUMBERS), round(side), round(side))
-        self.matrix.rect = self.matrix.relative_rect = matrix
+        self.matrix.rect = self.matrix.relative_rect = self._matrix = matrix
         self._cell = pygame.FRect(matrix.right + 36, matrix.top, self._area.right - matrix.right - 36, side)
 
     def _describe_more(self, column: Column) -> None:

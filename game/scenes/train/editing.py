@@ -6,21 +6,50 @@ run tells back, never what was asked for.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable
+from typing import Final, NamedTuple
 
 import numpy as np
 import pygame
 
 from ai.explain.inspection import links
 from ai.nn import NeuralNetwork
-from ai.training.edits import Edit
+from ai.training.edits import Edit, NetworkEdits
 from game.core import texts
-from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, SMALL
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import HUMAN, NIGHT0, SMALL
 from game.explain.network_view import NetworkView
-from game.scenes.train.picking import Link, Part, Unit, draw_marks, name_of, part_at
+from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.panel import Column
+
+_NEAR: Final = 5.0  # points from a link within which it is picked
+_CLEAR: Final = 0.04  # share of a link at either end that belongs to its units
+_DASH: Final = 7.0
+
+
+class Unit(NamedTuple):
+    """Unit of a network; stage 0 are the inputs."""
+
+    stage: int
+    unit: int
+
+
+class Link(NamedTuple):
+    """Link of a network, from a unit of stage `layer` to one of the next."""
+
+    layer: int
+    start: int
+    end: int
+
+    @property
+    def ends(self) -> tuple[Unit, Unit]:
+        """The units that it links."""
+        return Unit(self.layer, self.start), Unit(self.layer + 1, self.end)
+
+
+Part = Unit | Link
 
 
 class NetworkEditing:
@@ -28,13 +57,11 @@ class NetworkEditing:
 
     Attributes:
         picked: the unit or link that was chosen.
-        past: whether an earlier moment is shown, which cannot be edited.
 
     """
 
-    def __init__(self, view: NetworkView, run: TrainingRun) -> None:
-        self._view, self._run = view, run
-        self.past = False
+    def __init__(self, view: NetworkView, run: TrainingRun, rewind: Rewind) -> None:
+        self._view, self._run, self._rewind = view, run, rewind
         self.clear()
 
     def clear(self) -> None:
@@ -50,8 +77,8 @@ class NetworkEditing:
 
     @property
     def enabled(self) -> bool:
-        """Whether the network can be edited now."""
-        return self._run.alive and not self.past and self._network is not None
+        """Whether the network can be edited now: one of an earlier moment cannot."""
+        return self._run.alive and self._rewind.moment is None and self._network is not None
 
     @property
     def _weight(self) -> float | None:
@@ -101,7 +128,8 @@ class NetworkEditing:
     def key(self) -> Hashable:
         """What decides which rows there are."""
         edits = self._run.edits
-        return self.enabled, self.past, self.picked, self._silent, edits.steps > 0, edits.holds, edits.way_back
+        changed = edits.steps > 0, edits.holds, edits.way_back
+        return self.enabled, self._rewind.moment is None, self.picked, self._silent, changed
 
     def describe(self, column: Column, *, opened: bool) -> None:
         """Add what is picked, and what can be done to it; where the network is not seen, what was edited alone."""
@@ -132,7 +160,7 @@ class NetworkEditing:
     @property
     def _sentence(self) -> str:
         """What is said of what is picked."""
-        if self.past:
+        if self._rewind.moment is not None:
             return texts.EDIT_PAST
         if self.picked is None:
             return texts.EDIT_HINT
@@ -147,3 +175,77 @@ class NetworkEditing:
         """Draw the marks over the network."""
         if self._network is not None:
             draw_marks(canvas, self._view, self._run.edits, self.picked)
+
+
+def part_at(view: NetworkView, point: Point) -> Part | None:
+    """Return the unit at a point of the canvas, or else the drawn link; None for neither."""
+    if found := view.unit_at(point):
+        return Unit(found[0], int(view.columns[found[0]].units[found[1]]))
+    best, least = None, _NEAR
+    for edge in view.edges:
+        start, end = view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end]
+        away = _distance(point, start, end) - edge.size  # of two that cross, the stronger one is meant
+        if away < least:
+            best, least = edge, away
+    if best is None:
+        return None
+    left, right = view.columns[best.column], view.columns[best.column + 1]
+    return Link(best.column, int(left.units[best.start]), int(right.units[best.end]))
+
+
+def name_of(view: NetworkView, part: Part) -> str:
+    """Return the name of a unit, or of a link by those of its ends."""
+    if isinstance(part, Link):
+        return texts.EDIT_LINK.format(start=name_of(view, part.ends[0]), end=name_of(view, part.ends[1]))
+    place = _place(view, part)
+    return "" if place is None else view.name(part.stage, place)
+
+
+def draw_marks(canvas: Canvas, view: NetworkView, edits: NetworkEdits, picked: Part | None) -> None:
+    """Draw silenced units hollow, cut links dashed, and the picked unit or link in amber."""
+    for weight in edits.weights:
+        _draw_link(canvas, view, Link(*weight), cut=True)
+    for place in edits.silenced:
+        if centre := _centre(view, Unit(*place)):
+            canvas.dot(centre, view.radius + 2, NIGHT0)
+            canvas.marker("ring", centre, 2 * view.radius + 2, HUMAN)
+    if isinstance(picked, Link):
+        _draw_link(canvas, view, picked, cut=tuple(picked) in edits.weights)
+    elif picked and (centre := _centre(view, picked)):
+        canvas.marker("ring", centre, 2 * view.radius + 8, HUMAN)
+
+
+def _draw_link(canvas: Canvas, view: NetworkView, link: Link, *, cut: bool) -> None:
+    start, end = (_centre(view, unit) for unit in link.ends)
+    if start is None or end is None:
+        return
+    if not cut:
+        canvas.line(start, end, HUMAN, 2.0)
+        return
+    first = pygame.Vector2(start)
+    count = max(1, round(math.dist(start, end) / _DASH / 2))
+    for number in range(count):
+        here, there = first.lerp(end, number / count), first.lerp(end, (number + 0.5) / count)
+        canvas.line((here.x, here.y), (there.x, there.y), HUMAN, 1.5, 0.7)
+
+
+def _place(view: NetworkView, unit: Unit) -> int | None:
+    """Return the place of a unit among the shown ones of its column; None if it is not shown."""
+    if unit.stage >= len(view.columns):
+        return None
+    shown = np.flatnonzero(view.columns[unit.stage].units == unit.unit)
+    return int(shown[0]) if len(shown) else None
+
+
+def _centre(view: NetworkView, unit: Unit) -> Point | None:
+    place = _place(view, unit)
+    return None if place is None else view.centres[unit.stage][place]
+
+
+def _distance(point: Point, start: Point, end: Point) -> float:
+    """Return the distance from a point to a link between its ends; infinite beside them."""
+    (x, y), (x0, y0), (x1, y1) = point, start, end
+    along = ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / max((x1 - x0) ** 2 + (y1 - y0) ** 2, 1e-9)
+    if not _CLEAR < along < 1 - _CLEAR:
+        return math.inf
+    return math.hypot(x - x0 - along * (x1 - x0), y - y0 - along * (y1 - y0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final, get_args
 
 import numpy as np
@@ -21,6 +22,7 @@ from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
 from game.explain.tables import Line, table
 from game.scenes.train.editing import NetworkEditing
+from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 
@@ -32,7 +34,6 @@ class Inside:
     """The network and the parts of its reward.
 
     Attributes:
-        opened: whether they are seen; the network is followed in any case.
         view: shows `network`, None without a run; `shown` is the message that it came with.
         paid: points that each part of the reward has paid per flight, (len(PARTS),).
         health: diagnosis of the network's units and numbers.
@@ -40,29 +41,25 @@ class Inside:
 
     """
 
-    def __init__(self, run: TrainingRun) -> None:
-        self._opened = False
-        self._run = run
+    def __init__(self, run: TrainingRun, rewind: Rewind, is_open: Callable[[], bool]) -> None:
+        self._run, self._is_open = run, is_open
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self.editing = NetworkEditing(self.view, run)
+        self.editing = NetworkEditing(self.view, run, rewind)
         self.clear()
 
     def clear(self) -> None:
         """Reset for another run."""
         self.network: NeuralNetwork | None = None
         self.shown: NetworkState | None = None
+        self._seen: NetworkState | None = None
         self.paid = np.zeros(len(PARTS))
         self.health = NetworkHealth()
         self.editing.clear()
 
     @property
     def opened(self) -> bool:
-        return self._opened
-
-    @opened.setter
-    def opened(self, opened: bool) -> None:
-        self._opened = opened
-        self._look()
+        """Whether they are seen; the network is followed in any case."""
+        return self._is_open()
 
     @property
     def busy(self) -> bool:
@@ -93,14 +90,6 @@ class Inside:
         self.network, self.shown = network, state
         network.values = state.values
         network.gradients[:] = state.gradients
-        self._look()
-
-    def _look(self) -> None:
-        """Let the view follow, while it is seen: to choose what it shows takes a millisecond."""
-        if self._opened and self.network is not None and self.shown is not None:
-            self.view.output_scale = self._run.config.reward_scale
-            self.view.set(self.network, self.shown.observation)
-            self.editing.look(self.network)
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
@@ -110,7 +99,12 @@ class Inside:
             self.editing.follow(event)
 
     def update(self) -> None:
-        """Advance by 1/60 s."""
+        """Advance by 1/60 s; the view follows while it is seen: to choose what it shows takes a millisecond."""
+        if self.opened and self.shown is not self._seen and self.network is not None and self.shown is not None:
+            self._seen = self.shown
+            self.view.output_scale = self._run.config.reward_scale
+            self.view.set(self.network, self.shown.observation)
+            self.editing.look(self.network)
         self.editing.update()
         if self.opened:
             self.view.update()

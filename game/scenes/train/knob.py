@@ -19,7 +19,7 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.run_settings import KnobDescription, figure
-from game.ui.widget import PointsManager, RowWidget, mix
+from game.ui.widget import RowWidget, mix
 
 _LABELS, _FIGURES = 150.0, 62.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0
@@ -47,12 +47,11 @@ class Knob(RowWidget):
 
     def __init__(
         self,
-        manager: PointsManager,
         description: KnobDescription,
         turn: Callable[[str, Any], None],
         enter: Callable[[], None] = lambda: None,
     ) -> None:
-        super().__init__(manager, (0, 0, 1, 1), description.label)
+        super().__init__((0, 0, 1, 1), description.label)
         self.description, self.help = description, description.help
         self.value = self.home = None
         self.waits = self.changed = False
@@ -176,8 +175,8 @@ class SliderKnob(Knob):
             self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle)
         elif self.idle:
             self._put_beside(canvas, texts.KNOB_IDLE, handle, handle)
-        canvas.text(figure(self.value), (cursor.right, middle + 4.5), size=SMALL, colour=colour, align="right",
-                    tabular=True, room=_FIGURES - 8)  # fmt: skip
+        place, room = (cursor.right, middle + 4.5), _FIGURES - 8
+        canvas.text(figure(self.value), place, size=SMALL, colour=colour, align="right", tabular=True, room=room)
 
     def _put_beside(self, canvas: Canvas, words: str, x: float, handle: float) -> None:
         """Write text over the track, around x as far as there is room, clear of the handle."""

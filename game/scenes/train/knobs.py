@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from functools import partial
 from typing import Any, Final
 
@@ -17,7 +17,6 @@ from game.training.run_settings import (
     WEIGHTS,
     Configuration,
     KnobDescription,
-    RunKind,
     RunSettings,
     figure,
     label,
@@ -39,30 +38,16 @@ class KnobsPanel:
 
     Args:
         form: the scene's form.
-        config: configuration to begin with.
-        seed: seed to begin with.
-        on_change: called with the name and value of every knob that changes; during a run, only of those that may.
-            Names are those of the configuration ("reward_weights.time" for a part of the reward, "seed" for the seed).
-        on_restart: called with a configuration and seed for a new run, once the player has applied them.
-        run_kind: the kind of run, with its presets and knobs.
+        settings: what they set, and what waits for a new run.
 
     Attributes:
-        settings: what they set, and what waits for a new run.
         every: whether all knobs are shown.
 
     """
 
-    def __init__(
-        self,
-        form: Form,
-        config: Configuration,
-        seed: int,
-        on_change: Callable[[str, Any], None],
-        on_restart: Callable[[Configuration, int], None],
-        run_kind: RunKind,
-    ) -> None:
-        self._form, self._run_kind = form, run_kind
-        self.settings = RunSettings(config, seed, on_change, on_restart, run_kind)
+    def __init__(self, form: Form, settings: RunSettings) -> None:
+        self._form, self.settings = form, settings
+        self._run_kind = run_kind = settings.run_kind
         chance = KnobDescription(SEED, "", label(SEED), texts.KNOB_SEED, run_kind.seed_page, False, "slider", _SEEDS)
         self._descriptions = {each.name: each for each in (*run_kind.knob_descriptions, chance)}
         self.pages = pages(run_kind.knob_descriptions)
@@ -86,13 +71,8 @@ class KnobsPanel:
         return self._run_kind.said(self.settings.holds)[0]
 
     @property
-    def first(self) -> tuple[str, ...]:
-        """Names of the few knobs to begin with; one that has no effect any more gives way to the one that acts."""
-        return tuple(self._acting)
-
-    @property
-    def _acting(self) -> dict[str, str]:
-        """The knobs that act in place of the few to begin with, and those whose names they keep."""
+    def first(self) -> dict[str, str]:
+        """The few knobs to begin with, or those that act in their place, each with the one whose label it has."""
         spent, acting = in_force.idle if (in_force := self.settings.in_force) else {}, dict[str, str]()
         for name in self._run_kind.first:
             acting.setdefault(spent.get(name, name), name)
@@ -102,7 +82,7 @@ class KnobsPanel:
     def key(self) -> Hashable:
         """What decides which rows there are."""
         settings = self.settings
-        return self.every, self._page, self.first, settings.holds, settings.changed, self._asks, bool(settings.waiting)
+        return self._page, tuple(self.first), settings.holds, settings.changed, self._asks, bool(settings.waiting)
 
     @property
     def _asks(self) -> bool:
@@ -153,15 +133,15 @@ class KnobsPanel:
     def describe(self, column: Column) -> None:
         """Add the preset's name, and the knobs: few, or a page of all."""
         column.add(self._write_name)
-        acting, kind = self._acting, self._run_kind
+        names, kind = self.first, self._run_kind
         if self.every:
             others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
             column.words([(kind.said((base, ""))[0], partial(self.load, base)) for base in others])
             tabs = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self.pages]
             column.choice("", tabs, self._page, self._turn_page, LABEL)
             page = self.pages[self._page]
-            acting = {name: name for name, each in self._descriptions.items() if each.page == page}
-        for name, called in acting.items():
+            names = {name: name for name, each in self._descriptions.items() if each.page == page}
+        for name, called in names.items():
             column.widget(self._knob(name)).label = self._descriptions[called].label
         self.show()
 
@@ -178,7 +158,7 @@ class KnobsPanel:
         knob = self._knobs.get(name)
         if knob is None or knob not in self._form.widgets:
             description = self._descriptions[name]
-            knob = KINDS[description.kind](self._form.manager, description, self.turn, self._focus_answer)
+            knob = KINDS[description.kind](description, self.turn, self._focus_answer)
             self._knobs[name] = knob
         return knob
 
@@ -207,9 +187,7 @@ class KnobsPanel:
         """Write what was refused, or what the knob in focus does, and how to restore it."""
         settings, knob = self.settings, self._form.focused
         if settings.problem:
-            small = cursor.in_style(SMALL, cursor.canvas.palette.warn if cursor.canvas else HUMAN)
-            small.text(settings.problem)
-            cursor.y = small.y
+            cursor.styled(settings.problem, SMALL, cursor.palette.warn)
         elif isinstance(knob, Knob):
             self._write_help_of(knob, cursor)
         elif self.every and not self._asks:
@@ -218,9 +196,7 @@ class KnobsPanel:
     def _write_help_of(self, knob: Knob, cursor: Cursor) -> None:
         cursor.aside(knob.help)
         if knob.description.field == WEIGHTS and self.settings.running:
-            small = cursor.in_style(SMALL, HUMAN)
-            small.text(texts.KNOBS_NEW_PAY)
-            cursor.y = small.y
+            cursor.styled(texts.KNOBS_NEW_PAY, SMALL, HUMAN)
         for heading, advice in zip(texts.KNOB_ADVICE_NAMES, knob.description.advice, strict=False):
             if advice and self.every:
                 cursor.aside(f"{heading}: {advice}")

@@ -25,6 +25,7 @@ from ai.training.experiments import (
 from ai.training.messages import DIVERGED
 from game.core import texts
 from game.core.assets import ASSETS_DIR
+from game.core.catalogue import capital
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
 from game.scenes.train.knobs import KnobsPanel
 from game.training.run import TrainingRun
@@ -122,10 +123,8 @@ class Laboratory:
             column.button(word, partial(self._ask, name, word), what, colour=INK)
         for knob in (each for each in LANDERS.knob_descriptions if each.name in self._knobs.first):
             column.aside(texts.LAB_TURN.format(knob=knob.label))
-            column.words([
-                (experiment_word(each, knob), partial(self._try, each, knob))
-                for each in experiments(self._knobs.config, knob.name)
-            ])  # fmt: skip
+            found = experiments(self._knobs.config, knob.name)
+            column.words([(experiment_word(each, knob), partial(self._try, each, knob)) for each in found])
         column.button(texts.BACK, self.close)
 
     def _ask(self, sabotage: str, word: str) -> None:
@@ -179,11 +178,8 @@ class Laboratory:
         for subject, colour in (("came", NET), ("why", INK), ("measured", MUTE)):
             column.text(partial(self._sentence, subject), size=SMALL, colour=colour)
         column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
-        column.words([
-            (texts.LAB_KEEP_RUN, partial(self._leave, False)),
-            (texts.LAB_KEEP_EXPERIMENT, partial(self._leave, True)),
-            (texts.LAB_KNOBS, self.close),
-        ])  # fmt: skip
+        go_on, take = partial(self._leave, False), partial(self._leave, True)
+        column.words([(texts.LAB_KEEP_RUN, go_on), (texts.LAB_KEEP_EXPERIMENT, take), (texts.LAB_KNOBS, self.close)])
 
     def _sentence(self, subject: str) -> str:
         return self.said[subject]
@@ -227,7 +223,7 @@ def listed_differences(before: Config, after: Config) -> str:
     found = []
     for name, (old, new) in differences(before, after).items():
         head, _, part = name.partition(".")
-        word = texts.REWARD_PARTS[part][0].capitalize() if part in texts.REWARD_PARTS else label(head)
+        word = capital(texts.REWARD_PARTS[part][0]) if part in texts.REWARD_PARTS else label(head)
         found.append(texts.LAB_DIFFERS.format(knob=word, before=figure(old), after=figure(new)))
     return ", ".join(found)
 

@@ -1,10 +1,17 @@
-"""Where Train's parts stand in a window of any shape: display and panel side by side, or one below the other."""
+"""Where Train's parts stand in a window of any shape, side by side or one below the other, and the title over them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import pygame
+
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import MUTE, SMALL, TITLE
+from game.explain.readouts import rate_colour
+from game.ui.hints import Hint, HintRow
 
 CAPTION: Final = 32.0  # points below a chart, for what is said of it
 _SIDE: Final = (320.0, 422.0)  # width of the panel at least and at most
@@ -14,6 +21,9 @@ _MARGIN: Final = 28.0
 _CHART: Final = (70.0, 172.0)  # height of a chart at least and at most
 _CHARTS: Final = (0.31, 0.5)  # share of the display for one row of charts, and for more
 _COLUMNS: Final = 2
+_TITLE: Final = (24.0, 16.0)  # corner of the title over the display
+_WIDEST: Final = 372.0
+_FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
 
 
 class Layout(NamedTuple):
@@ -52,3 +62,37 @@ def layout(view: pygame.FRect, charts: int) -> Layout:
         for row, column in (divmod(number, _COLUMNS) for number in range(charts))
     )
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
+
+
+class TrainingStatus(NamedTuple):
+    """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
+
+    title: str
+    line: str
+    figure: str
+    words: str
+
+    def draw(self, canvas: Canvas, place: Layout, hints: Sequence[Hint]) -> None:
+        """Draw the title over the display, and the share that succeeds, large."""
+        left, top = _TITLE
+        width = min(_WIDEST, place.display.width - 2 * left)
+        size = min(max(_FIGURE[2] * place.swarm.height, _FIGURE[0]), _FIGURE[1])
+        cursor = Cursor(left + 16, top + 10, width - 32, canvas.scale)
+        self._write(cursor, size)
+        box = (left, top, width, cursor.y - top + 8)
+        canvas.panel(box, 1.0)
+        self._write(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), size)
+        HintRow(hints, (left + width - 16, top + 30), from_right=True).draw(canvas)
+
+    def _write(self, cursor: Cursor, size: float) -> None:
+        cursor.styled(self.title, TITLE)
+        if self.figure:
+            wide = cursor.in_style(size, weight="light").measured(self.figure, tabular=True)
+            if canvas := cursor.canvas:
+                left, y = cursor.left - 2, cursor.y + 0.92 * size
+                colour = rate_colour(canvas, float(self.figure))
+                canvas.text(self.figure, (left, y), size=size, weight="light", tabular=True, colour=colour)
+                left, room = left + wide + 12, cursor.width - wide - 10
+                canvas.text(self.words, (left, y), size=SMALL, colour=MUTE, room=room)
+            cursor.gap(1.08 * size)
+        cursor.aside(self.line)

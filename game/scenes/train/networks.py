@@ -12,13 +12,13 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.names import LONGEST_NAME, LibraryError, fitting
-from game.core.scene import Pop, Transition, push
+from game.core.names import LibraryError
+from game.core.scene import Pop, Push, Transition, push
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.flight import networks
 from game.flight.study_runs import studies
-from game.input.controls import Command
+from game.scenes.menus.dialogs import NameDialog
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -55,10 +55,9 @@ class NetworksScene(PanelScene):
         choose: Callable[[str], None] | None = None,
         train: Callable[[Path], Transition] | None = None,
     ) -> None:
-        super().__init__(context, self._back)
+        super().__init__(context)
         self._choose, self._train = choose, train or (lambda folder: push("train", resume=folder))
         self._library = Library(context.user_dir)
-        self._naming = False
         self.chosen: SavedRun | None = None
         self._names: dict[Path, str] = {}
         self._read()
@@ -79,11 +78,8 @@ class NetworksScene(PanelScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Move, choose, go back; Delete and F2 do what they do elsewhere. While a name is typed, keep or leave it."""
-        if self._naming:
-            confirm = texts.HINT_KEEP_NAME if self.form.typing else texts.HINT_CHOOSE
-            return [self.form.confirms(confirm), Action(Command.BACK, self._end_naming, texts.HINT_LEAVE_NAME)]
-        own = [Action(pygame.K_DELETE, self._delete), Action(pygame.K_F2, self._begin_naming)] if self._is_own else []
+        """Move, choose, go back; Delete and F2 do what they do elsewhere."""
+        own = [Action(pygame.K_DELETE, self._delete), Action(pygame.K_F2, self._rename)] if self._is_own else []
         return [self.form.moves, *super().actions(), *own]
 
     # What there is
@@ -116,7 +112,8 @@ class NetworksScene(PanelScene):
         self._read()
         place = next((n for n, run in enumerate(self.items) if run.folder == wanted), min(before, len(self.items) - 1))
         self.chosen = self.items[place] if self.items else None
-        self._end_naming()
+        self.build()
+        self.form.focus(self._list)
 
     # Rows
 
@@ -127,29 +124,24 @@ class NetworksScene(PanelScene):
         panel.gap(4)
         left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
         left.add(partial(write_headings, texts.RUNS_COLUMNS, _CELLS))
+        rows = [row(run, own=not self._is_shipped(run)) for run in self.items]
+        index = self.items.index(self.chosen) if self.chosen else 0
         self._list = left.listing(
-            [row(run, own=not self._is_shipped(run)) for run in self.items], lambda _: self._press_row(),
-            texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH, on_choose=self._choose_row,
-            index=self.items.index(self.chosen) if self.chosen else 0,
+            rows, lambda _: self._press_row(), texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH,
+            on_choose=self._choose_row, index=index,
         )  # fmt: skip
         more: list[tuple[str, OnPress]] = []
         if deleted := self._library.last_deleted:
             more.append((texts.RUN_RESTORE.format(name=deleted), self._restore))
         if not self._choose and studies(self.context.user_dir):
             more.append((texts.STUDY_OPEN, lambda: push("study")))
-        left.words([*more, (texts.BACK, self._back)])
+        left.words([*more, (texts.BACK, Pop)])
         self._describe_chosen(self._beside)
 
     def _describe_chosen(self, column: Column) -> None:
         """Add the chosen run: its name, its figures, and what can be done with it."""
         run = self.chosen
         if run is None:
-            return
-        if self._naming:
-            text = suggestion(self._library, run) if self.context.controls.gamepad_in_use else run.name
-            column.caption(texts.RUN_NAME)
-            self._entry = column.entry(text, self._rename, self._end_naming, LONGEST_NAME, fitting)
-            column.words([(texts.RUN_KEEP_NAME, self._entry_done), (texts.RUN_LEAVE_NAME, self._end_naming)])
             return
         column.text(run.name, size=TITLE)
         if run.problem:
@@ -158,7 +150,7 @@ class NetworksScene(PanelScene):
             column.aside(_made(run))
             for label, figure in zip(texts.RUN_FIGURES, _figures(run), strict=True):
                 column.pair(label, figure, MUTE)
-            if run.success is not None:
+            if self._is_own and run.success is not None:
                 column.aside(texts.RUN_TESTED)
         saved = time.strftime("%Y-%m-%d %H:%M", time.localtime(run.saved))
         column.aside(texts.RUN_SHIPPED if self._is_shipped(run) else texts.RUN_SAVED.format(when=saved))
@@ -181,12 +173,12 @@ class NetworksScene(PanelScene):
         if run.resumable and not self._choose:
             verbs.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
         if self._is_own:
-            verbs += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export),
-                      (texts.RUN_DELETE, self._delete)]  # fmt: skip
+            verbs += [(texts.RUN_RENAME, self._rename), (texts.RUN_EXPORT, self._export)]
+            verbs.append((texts.RUN_DELETE, self._delete))
         return verbs
 
     def _choose_row(self, number: int) -> None:
-        self.chosen, self._naming = self.items[number], False
+        self.chosen = self.items[number]
         self._beside.clear()
         self._describe_chosen(self._beside)
 
@@ -199,12 +191,6 @@ class NetworksScene(PanelScene):
         return None
 
     # What can be done
-
-    def _back(self) -> Transition | None:
-        if not self._naming:
-            return Pop()
-        self._end_naming()
-        return None
 
     def _take(self) -> Transition | None:
         if not self.chosen or not self.chosen.flyable or self._choose is None:
@@ -221,35 +207,24 @@ class NetworksScene(PanelScene):
         self.context.settings.model = self._names[self.chosen.folder]
         self.context.apply_settings()
 
-    def _begin_naming(self) -> None:
-        self._naming = True
-        self.build()
-        self.form.focus(self._entry)
-        self._entry.begin()
-
-    def _entry_done(self) -> None:
-        self._rename(self._entry.text.strip())
-
-    def _rename(self, name: str) -> None:
-        """Rename the run; explain an invalid name and let the player edit it."""
-        run, context = self.chosen, self.context
+    def _rename(self) -> Transition:
+        """Ask for another name; a player without a keyboard is offered one made of the figures."""
+        run = self.chosen
         assert run is not None
+        name = suggestion(self._library, run) if self.context.controls.gamepad_in_use else run.name
+        return Push(NameDialog(self, texts.NAMING, name, partial(self._rename_to, run)))
+
+    def _rename_to(self, run: SavedRun, name: str) -> str:
+        """Rename a run; return why that failed, or ""."""
+        flies = self.context.settings.model == self._names.get(run.folder)
         try:
             renamed = self._library.rename(run.name, name)
         except LibraryError as error:
-            context.note(str(error))
-            self.form.focus(self._entry)
-            self._entry.begin()
-            return
-        flies = context.settings.model == self._names[run.folder]
+            return str(error)
         self._reload(renamed)
         if flies:
             self._make_pilot()
-
-    def _end_naming(self) -> None:
-        self._naming = False
-        self.build()
-        self.form.focus(self._list)
+        return ""
 
     def _export(self) -> None:
         run = self.chosen

@@ -14,7 +14,6 @@ from game.drawing.tokens import HUMAN, SMALL
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 from game.ui.rows import SliderRow
-from game.ui.widget import PointsManager
 
 _STEPS: Final = 100  # presses of an arrow from the beginning of a run to its end
 
@@ -112,11 +111,11 @@ class Rewind:
         words = texts.REWIND_AT_RUNNING if self._run.state is WorkerState.RUNNING else texts.REWIND_AT
         return words.format(seconds=float(seconds[self.row]), total=float(seconds[-1]))
 
-    def describe(self, column: Column, manager: PointsManager, *, timeline: bool) -> None:
+    def describe(self, column: Column, *, timeline: bool) -> None:
         """Add the moment, the word that leads back to now and, where no chart is seen, a timeline."""
         self._timeline = None
         if timeline and len(self._run.history):
-            self._timeline = column.widget(_Timeline(manager, self))
+            self._timeline = column.widget(_Timeline(self))
         if self.moment is not None:
             column.text(lambda: self.words, size=SMALL, colour=HUMAN)
             column.button(texts.REWIND_NOW, self.clear, colour=HUMAN)
@@ -134,11 +133,9 @@ class Rewind:
 class _Timeline(SliderRow):
     """Slider over the whole run; the arrows go from one kept moment to the next."""
 
-    def __init__(self, manager: PointsManager, rewind: Rewind) -> None:
-        super().__init__(
-            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.go_to_share, step=0.001,
-            figure=rewind.seconds_at,
-        )  # fmt: skip
+    def __init__(self, rewind: Rewind) -> None:
+        label, share, change = texts.REWIND_TIMELINE, rewind.share, rewind.go_to_share
+        super().__init__(label, share, (0.0, 1.0), change, step=0.001, figure=rewind.seconds_at)
         self._rewind = rewind
 
     def shift(self, direction: int) -> bool:

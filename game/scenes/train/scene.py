@@ -21,32 +21,30 @@ from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import LINE, MUTE, NIGHT0, SMALL
+from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
-from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene, TrainingStatus
+from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
 from game.scenes.train.charts import BY_DECISIONS, SCORE, Beside, ChartCaptions, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.laboratory import Laboratory
-from game.scenes.train.layout import Layout
+from game.scenes.train.landers import HEAD, Landers
+from game.scenes.train.layout import Layout, TrainingStatus
 from game.scenes.train.rewind import Rewind
-from game.scenes.train.split_view import SplitView
 from game.training.library import Library
 from game.training.record import take_away
-from game.training.run import PACES, TrainingRun
+from game.training.run import TrainingRun
 from game.training.run_kind import LANDERS
+from game.training.run_settings import RunSettings
 from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.rows import RunRow
 from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import Widget
-from game.world.swarm import LearningSwarm
 
-_HEAD: Final = 130.0  # of the display, for the title above two swarms
 _BEHIND: Final = 0.72  # cover of the swarm behind an edited network
 _JUDGED: Final = 20  # frames after which an experiment is judged anew
 
@@ -55,9 +53,8 @@ class TrainScene(TrainingScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once.
 
     Attributes:
-        swarm, past_swarm: the landers now, and those of the moment that is shown instead.
+        landers: what is seen of them.
         laboratory: the experiment that was chosen, and what came of it.
-        split_view: the two swarms.
         inside: the network.
         rewind: the moment that is shown.
 
@@ -71,20 +68,17 @@ class TrainScene(TrainingScene):
 
     def _build(self) -> None:
         run = self.run
-        self.swarm, self.past_swarm = LearningSwarm(), LearningSwarm()
         self.charts, self.captions = TrainingCharts(), ChartCaptions()
-        self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
+        settings = RunSettings(PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
+        self.knobs = KnobsPanel(self.form, settings)
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
-        self.split_view, self.inside, self.rewind = SplitView(run), Inside(run), Rewind(run)
+        self.rewind = Rewind(run)
+        self.landers = Landers(run, self.rewind)
+        self.inside = Inside(run, self.rewind, partial(self.opened, INSIDE))
         self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
-        self._pace, self._frame = len(PACES) - 1, 0
+        self._frame = 0
         self._news = False  # of the network, on which there is no advice yet
-        self._legend: list[RunRow] = []
-
-    def _show_opened(self) -> None:
-        super()._show_opened()
-        self.inside.opened = self.opened(INSIDE)
 
     # Rows
 
@@ -92,22 +86,21 @@ class TrainScene(TrainingScene):
     def _key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
-        return (self.laboratory.page, self.run.twin is None, self.moment is None, self._advice.key, earlier, opened,
-                self.inside.editing.key)  # fmt: skip
+        now, editing = self.rewind.moment is None, self.inside.editing.key
+        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened, editing
 
     @property
     def _status(self) -> TrainingStatus:
         run, row, title, landed = self.run, self.rewind.row, texts.TRAIN_TITLE, texts.TRAIN_LANDED
         if run.swarm_state is None or not len(run.history):
             return TrainingStatus(title, texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE, "", landed)
-        line = texts.TRAIN_FIGURES.format(
-            landers=len(run.swarm_state.outcome), seconds=run.history["seconds"][row],
-            count=int(run.swarm_state.decisions) if self.moment is None else self.moment,
-        )  # fmt: skip
+        landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
+        count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
+        line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
         share = run.history["success"][row]
         figure = "" if np.isnan(share) else f"{100 * share:.0f}"
         painted = "".join(self.charts.landed[:1])
-        if self.moment is None and painted.isdigit():  # one number for the title and its chart
+        if self.rewind.moment is None and painted.isdigit():  # one number for the title and its chart
             figure = painted
         return TrainingStatus(title, line, figure, landed)
 
@@ -120,32 +113,21 @@ class TrainScene(TrainingScene):
         return words.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
 
     def _place(self, place: Layout) -> None:
-        head = min(_HEAD, 0.4 * place.swarm.height)
-        for swarm in (self.swarm, self.past_swarm):
-            swarm.place(place.swarm)
-            swarm.head = head
-        halves = pygame.FRect(place.swarm.left, place.swarm.top + head, place.swarm.width, place.swarm.height - head)
-        self.split_view.place(halves)
+        self.landers.place(place.swarm)
         self.inside.place(place.display)
-        boxes = [self.inside.view.box]
-        if not self.inside.opened:
-            boxes = [place.swarm, pygame.FRect(self.charts.box), place.charts[0].union(place.charts[1])]
-        for widget, box in zip(self._laid_pointers, boxes, strict=True):
-            widget.relative_rect = widget.rect = pygame.Rect(box)
 
-    def _pointers(self) -> list[Widget]:
-        manager, nowhere, charts = self.form.manager, (0, 0, 1, 1), self.charts
+    def _pointers(self) -> list[Pointer]:
+        nowhere, charts = (0, 0, 1, 1), self.charts
         if self.inside.opened:
-            self._laid_pointers: list[Widget] = [
-                VirtualPointer(manager, nowhere, self.inside.follow, hold=texts.EDIT_PICK)
-            ]
-        else:
-            self._laid_pointers = [
-                VirtualPointer(manager, nowhere, self._choose_lander, hold=texts.LESSON_MARK),
-                VirtualPointer(manager, nowhere, charts.follow),
-                Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by),
-            ]
-        return self._laid_pointers
+            view = VirtualPointer(nowhere, self.inside.follow, hold=texts.EDIT_PICK)
+            return [(view, lambda: self.inside.view.box)]
+        landers = VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK)
+        scrubber = Scrubber(charts, self._scrub, self._duel, charts.zoom_by)
+        return [
+            (landers, lambda: self.landers.box),
+            (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
+            (scrubber, lambda: charts.charts[0].box.union(charts.charts[1].box)),
+        ]
 
     def _scrub(self, place: float | int) -> None:
         if isinstance(place, int):
@@ -154,8 +136,7 @@ class TrainScene(TrainingScene):
             self.rewind.go_to(self.charts.decisions_at(place))
 
     def _describe(self, column: Column) -> None:
-        self._legend = []
-        self.rewind.describe(column, self.form.manager, timeline=self.inside.opened)
+        self.rewind.describe(column, timeline=self.inside.opened)
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
@@ -186,7 +167,7 @@ class TrainScene(TrainingScene):
             (texts.TRAIN_STEP, self.run.step),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
-        column.choice("", texts.TRAIN_PACES, self._pace, self._set_pace)
+        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace)
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one, and by what they are measured."""
@@ -196,7 +177,7 @@ class TrainScene(TrainingScene):
         column.line()
         for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
             press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
-            self._legend.append(column.widget(RunRow(self.form.manager, name, style, press)))
+            column.widget(RunRow(name, style, press))
         if not self.run.twin:
             column.aside(texts.COMPARE_REMOVE)
         column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)
@@ -204,16 +185,12 @@ class TrainScene(TrainingScene):
     @property
     def _beside(self) -> Beside:
         chosen = self.laboratory.chosen
-        return self.split_view.beside(chosen.name if chosen else texts.LAB_HEADING)
+        return self.landers.beside(chosen.name if chosen else texts.LAB_HEADING)
 
     def _describe_hint(self, column: Column) -> bool:
         if self._advice.shown:
             self._advice.describe(column)
         return self._advice.shown
-
-    def _set_pace(self, pace: int) -> None:
-        self._pace = pace
-        self.run.set_pace(pace)
 
     # Events and time
 
@@ -230,19 +207,18 @@ class TrainScene(TrainingScene):
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
         run, still = self.run, self._settings.reduced_motion
-        looked = self._listen_to_swarm()
+        looked = self._listen_to_run()
         self._advice.silence(bool(self.knobs.settings.waiting) or run.twin is not None)
         if not run.alive:
             self._advice.clear()
         else:
             self.knobs.show_in_force(run.in_force)
-        self._go_to(self.moment)
+        self._go_to_moment()
         if self._news and run.alive and not looked:  # in a frame of its own
             self._news, looked = False, True
             self._advice.follow(self.inside.health)
         looked |= self.charts.look(run.history, self._beside, self._caption)
-        self.swarm.update(still)
-        self.split_view.update(still, self.moment)
+        self.landers.update(still)
         self._frame += 1
         if self._frame % _JUDGED == 0:
             self.laboratory.follow()
@@ -251,48 +227,31 @@ class TrainScene(TrainingScene):
         self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         return self._finish_update() or self.lessons.update()
 
-    def _listen_to_swarm(self) -> bool:
+    def _listen_to_run(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
         run = self.run
-        swarm_state, network_state = run.swarm_state, run.network_state
+        network_state = run.network_state
         self._listen()
-        if run.swarm_state is not None and run.swarm_state is not swarm_state:
-            self.swarm.take(run.swarm_state)
         if run.network_state is None or run.network_state is network_state:
             return False
-        if self.moment is None:
+        if self.rewind.moment is None:
             self.inside.examine(run.network_state)
         self._news = run.alive and len(run.history) > 0
         return True
 
-    def _go_to(self, moment: int | None) -> None:
-        """Show everything as it was at a moment, or as it is now; call it once a frame."""
-        rewind = self.rewind
+    def _go_to_moment(self) -> None:
+        """Show everything as it was at the moment that is chosen, or as it is now; call it once a frame."""
+        rewind, moment = self.rewind, self.rewind.moment
         rewind.update()
-        if moment == self.charts.moment:
-            return
-        self.charts.go_to(moment)
-        self.inside.editing.past = moment is not None
-        self.inside.show(self.run.network_state if moment is None else rewind.network_state, rewind.row)
-        self.past_swarm.clear()
-        if rewind.swarm_state is not None:
-            self.past_swarm.take(rewind.swarm_state)
+        if moment != self.charts.moment:
+            self.charts.go_to(moment)
+            self.inside.show(self.run.network_state if moment is None else rewind.network_state, rewind.row)
 
     def _caption(self, chart: str) -> str:
         run = self.run
         if chart == SCORE and self._beside.paid_otherwise:
             return texts.LAB_PAID_OTHERWISE
         return self.captions.read(chart, run.history, run.config, self._advice.hint) if run.alive else ""
-
-    @property
-    def moment(self) -> int | None:
-        """Moment of the run that is shown, in decisions; None for now."""
-        return self.rewind.moment
-
-    @property
-    def shown_swarm(self) -> LearningSwarm:
-        """The landers of the moment that is shown."""
-        return self.swarm if self.moment is None else self.past_swarm
 
     # The run
 
@@ -302,7 +261,7 @@ class TrainScene(TrainingScene):
         super()._start(config, seed, resume)
 
     def _clear(self) -> None:
-        for part in (self.split_view, self.swarm, self.rewind, self._advice, self.charts, self.captions, self.inside):
+        for part in (self.landers, self.rewind, self._advice, self.charts, self.captions, self.inside):
             part.clear()
 
     @property
@@ -318,7 +277,7 @@ class TrainScene(TrainingScene):
 
     def _choose_lander(self, event: pygame.event.Event) -> None:
         """Choose the lander that is clicked, in points; a second click asks for its lesson."""
-        swarm, pressed = self.shown_swarm, event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        swarm, pressed = self.landers.shown, event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
         slot = swarm.slot_at(event.pos) if pressed else None
         if slot is not None and slot == swarm.chosen:
             self._ask_why()
@@ -327,8 +286,8 @@ class TrainScene(TrainingScene):
 
     def _ask_why(self) -> None:
         """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
-        chosen = self.shown_swarm.chosen
-        self.lessons.ask(CAREFUL if chosen is None else chosen, self.moment)
+        chosen = self.landers.shown.chosen
+        self.lessons.ask(CAREFUL if chosen is None else chosen, self.rewind.moment)
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
@@ -366,7 +325,7 @@ class TrainScene(TrainingScene):
 
     def _duel(self) -> Transition | None:
         """Fly against the checkpoint of the moment that is shown."""
-        checkpoint = self.run.history.checkpoint_at(math.inf if self.moment is None else self.moment)
+        checkpoint = self.run.history.checkpoint_at(math.inf if self.rewind.moment is None else self.rewind.moment)
         if checkpoint is None:
             self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
@@ -407,14 +366,14 @@ class TrainScene(TrainingScene):
 
     @property
     def _back_hint(self) -> str:
-        return texts.HINT_BACK if self.moment is None else texts.REWIND_BACK
+        return texts.HINT_BACK if self.rewind.moment is None else texts.REWIND_BACK
 
     def _back(self) -> Transition | None:
         if self.laboratory.page:
             self.laboratory.close()
         elif self.inside.opened:
             self.open(INSIDE)
-        elif self.moment is not None:
+        elif self.rewind.moment is not None:
             self.rewind.clear()
         else:
             return super()._back()
@@ -424,23 +383,18 @@ class TrainScene(TrainingScene):
         """Draw the swarm and the charts, or the network."""
         assert self._layout is not None
         display, box = self._layout.display, self._layout.swarm
-        split, paused = self.run.twin is not None, self.run.state is WorkerState.PAUSED
+        split = self.run.twin is not None
         if self.inside.opened:
-            edited = self.run.edits.holds and self.moment is None  # then the swarm is seen behind the network
+            edited = self.run.edits.holds and self.rewind.moment is None  # then the swarm is seen behind the network
             if edited:
-                self.swarm.draw(canvas, alpha, paused=paused)
+                self.landers.now.draw(canvas, alpha, paused=self.run.state is WorkerState.PAUSED)
             canvas.fill(canvas.rect(*display), NIGHT0, _BEHIND if edited else 1.0)
             self.inside.draw(canvas)
             return
         top = display.top if split else box.bottom  # one swarm fills its box
         canvas.fill(canvas.rect(display.left, top, display.width, display.bottom - top), NIGHT0)
         self.charts.draw(canvas)  # first, as the title and both halves say what they have painted
-        if split:
-            self.split_view.draw(canvas, alpha, self.charts.landed)
-        else:
-            self.shown_swarm.draw(canvas, alpha, paused=paused or self.moment is not None)
-            if self.moment is not None and self.rewind.swarm_state is None:
-                canvas.text(texts.REWIND_NO_LANDERS, box.center, size=SMALL, colour=MUTE, align="centre")
+        self.landers.draw(canvas, alpha, self.charts.landed)
         canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
-        if not split or box.height > 2 * _HEAD:  # or else it would lie on both swarms, which say the same
+        if not split or box.height > 2 * HEAD:  # or else it would lie on both swarms, which say the same
             self.draw_title(canvas)

@@ -14,11 +14,10 @@ from ai.lander.environment import OBSERVATION_SCALE
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
-from game.explain.figures import what_is_sensed
-from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
-from game.explain.readouts import draw_centred_bars
-from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.explain.figures import points, what_is_sensed
+from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values
+from game.scenes.watch.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
 _COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
@@ -27,7 +26,7 @@ _VALUES: Final = 62  # first baseline of the values, from the panel's top
 _WORDS: Final = _VALUES + HEIGHT + 28
 _INPUTS: Final = _WORDS + 72  # first baseline of the inputs
 _PITCH: Final = 18
-_FIGURE: Final = 52  # room for an input's figure
+_NAME, _FIGURE = 96, 52  # room for an input's name, and for its figure
 _SWATCH: Final = (5.0, 12.0)  # of an action's colour on the map
 _LEGEND: Final = pygame.Rect(PANEL.left, PANEL.bottom + 4, PANEL.width, 46)  # of the map of scores
 _BARS: Final = PaintCache(1)
@@ -42,7 +41,6 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
     canvas.text(texts.DECISION_SCRIPTED_TITLE if values is None else texts.DECISION_TITLE, (left, top + 34), room=width)
     if values is None:
         draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
-        canvas.explain((left, top + _VALUES - 14, width, HEIGHT - 20), texts.EXPLAIN_RULES)
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
     if policy_map and policy_map.kind == ACTION:
@@ -51,7 +49,9 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
         _draw_scale(canvas, policy_map.scale)
     for number, line in enumerate(decision_words(decision)):
         canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
-    canvas.explain((left, top + _WORDS - 14, width, 38), texts.EXPLAIN_WHY, partial(_keeps, decision))
+    if decision.points is not None:
+        words = texts.EXPLAIN_WHY_NOW if decision.margin else texts.EXPLAIN_WHY_BEST
+        canvas.explain((left, top + _WORDS - 14, width, 38), words.format(margin=decision.margin))
     canvas.line((left, top + _WORDS + 32), (left + width, top + _WORDS + 32), LINE)
     canvas.text(texts.DECISION_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
     _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
@@ -73,9 +73,9 @@ def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
     _BARS.draw(canvas, (left, top + 12, width, 6), "scores", _paint_scale)
     for share, align in ((0.0, "left"), (0.5, "centre"), (1.0, "right")):
         if scale is not None:
-            points = signed(scale[0] + share * (scale[1] - scale[0])).removesuffix(".0")
+            value = points(scale[0] + share * (scale[1] - scale[0]), 1).removesuffix(".0")
             place = (left + share * width, top + 34)
-            canvas.text(points, place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
+            canvas.text(value, place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
     canvas.explain(_LEGEND, texts.EXPLAIN_MAP[SCORE - 1])
 
 
@@ -87,10 +87,16 @@ def _paint_scale(sheet: Canvas) -> None:
 
 def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, width: float) -> None:
     """Draw each input of the network: its figure, and a bar compressed by tanh."""
-    draw_centred_bars(canvas, np.tanh(inputs).tolist(), top, left, width - _FIGURE, _PITCH)
+    start, half = left + _NAME, (width - _FIGURE - _NAME) / 2
+    middle = start + half
     for number, (name, value) in enumerate(zip(texts.INPUTS, inputs, strict=True)):
-        y = top + _PITCH * number + 4
-        canvas.text(name, (left, y), size=LABEL, colour=MUTE, room=90)
+        y, reach = top + _PITCH * number, math.tanh(value) * half
+        canvas.pill((start, y - 1, 2 * half, 2), FAINT, 0.5)
+        if abs(reach) >= 1:
+            canvas.pill((min(middle, middle + reach), y - 1.5, abs(reach), 3), NET)
+        canvas.line((middle, y - 4), (middle, y + 4), MUTE)
+        y += 4
+        canvas.text(name, (left, y), size=LABEL, colour=MUTE, room=_NAME - 6)
         figure = f"{value:.2f}".replace("-", "−")
         canvas.text(figure, (left + width, y), size=LABEL, colour=MUTE, align="right", tabular=True)
         canvas.explain((left, y - 13, width, _PITCH), what_is_sensed(number), partial(_sensed, inputs, number))
@@ -104,12 +110,3 @@ def _sensed(inputs: list[float], number: int) -> str:
     elif number == 6:
         value = math.degrees(value)
     return texts.EXPLAIN_INPUTS_NOW[number].format(value=value).replace("-", "−")
-
-
-def _keeps(decision: Decision) -> str:
-    """Say when this pilot keeps an action."""
-    if decision.points is None:
-        return texts.EXPLAIN_WHY_RULES
-    if not decision.margin:
-        return texts.EXPLAIN_WHY_BEST
-    return texts.EXPLAIN_WHY_NOW.format(margin=decision.margin)

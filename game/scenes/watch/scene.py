@@ -14,6 +14,7 @@ from ai.files import brief
 from ai.lander.environment import ACTION_NAMES
 from ai.pilots.own import OwnPilot
 from game.core import texts
+from game.core.catalogue import capital
 from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, moved
@@ -25,16 +26,15 @@ from game.flight import networks, own
 from game.flight.swarm import Swarm
 from game.input.controls import Command
 from game.scenes.watch.decision_panel import PANEL, draw_decision
+from game.scenes.watch.policy_map import ACTION
 from game.scenes.watch.touch import Hand
 from game.scenes.watch.watched import SIZES, Watched
 from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
-from game.ui.form import Part
-from game.ui.form_scene import FormScene
+from game.ui.form import FormScene, Part
 from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.widget import OnPress, Widget
-from game.world.policy_map import ACTION
 
 COUNTS: Final = tuple(SIZES)
 _ROWS: Final = (452.0, 712.0)  # greatest width of the choices, for the pad begins there, and where they end
@@ -80,7 +80,7 @@ class WatchScene(FormScene):
         wanted = names.index(first) if first in names else 0
         self._rows: list[Widget] = []
         self._describe(wanted)
-        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, context.view))
+        self.hand = self.form.add(Hand(self.world, _TOUCHED, context.view))
         self._choose_network(wanted)
         if self.problem:
             self.network = self.policies.first_fit()
@@ -234,7 +234,7 @@ class WatchScene(FormScene):
         def runs() -> Transition | None:
             outcome = run()
             said = value()
-            self._message = f"{what.capitalize()}: {said}" if said else what.capitalize()
+            self._message = f"{capital(what)}: {said}" if said else capital(what)
             return outcome
 
         return runs
@@ -279,7 +279,7 @@ class WatchScene(FormScene):
         """Put the rows above the lower edge of the page, whatever their height."""
         if self._size != typeface.grown(SMALL):
             self._describe(self._model_choice.index)
-        (width, end), scale = _ROWS, self.context.in_window((0, 0, 1000, 0)).width / 1000
+        (width, end), scale = _ROWS, self.context.reading().whole.scale
         self._panel.lay_out(pygame.FRect(MARGIN, 0, width, end), scale)
         height = self._panel.height + 1
         self._panel.lay_out(pygame.FRect(MARGIN, end - height, width, height), scale)

@@ -18,7 +18,7 @@ from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL
 from game.input.controls import Command, Controls, translate
 from game.ui.hints import Hint
 from game.ui.virtual_pointer import HeldDirections
-from game.ui.widget import PointsManager, Widget
+from game.ui.widget import Widget
 
 if TYPE_CHECKING:
     from ai.environment import Doubles
@@ -47,8 +47,8 @@ class Hand(Widget):
 
     """
 
-    def __init__(self, manager: PointsManager, lander: Watched, clear: pygame.Rect, view: pygame.FRect = PAGE) -> None:
-        super().__init__(manager, clear, texts.TOUCH_LANDER)
+    def __init__(self, lander: Watched, clear: pygame.Rect, view: pygame.FRect = PAGE) -> None:
+        super().__init__(clear, texts.TOUCH_LANDER)
         self._lander, self._clear, self._view = lander, clear, view
         self.part, self.dragging = PLACE, False
         self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points

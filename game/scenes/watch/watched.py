@@ -18,14 +18,15 @@ from game.drawing.tokens import INK
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
 from game.scenes.watch.decision_panel import PANEL
+from game.scenes.watch.policy_map import OFF, PolicyMap
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
 from game.world.camera import Camera, CameraTarget, ClearArea, View
+from game.world.craft import draw_crowd
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
-from game.world.policy_map import OFF, PolicyMap
 from game.world.scenery import mark_lost
 from game.world.stage import Stage
 
@@ -195,14 +196,14 @@ class Watched:
         """Draw the world, the map and the swarm."""
         calm = self._context.settings.reduced_motion
         view, size = self.camera.view(canvas.scale, between).filling(canvas), SIZES[self.env.num_envs]
-        landscape(canvas.surface.get_size(), calm).draw(canvas, self.camera, self._time, between)
+        landscape(canvas.surface.get_size(), calm, "moon").draw(canvas, self.camera, self._time, between)
         self.policy_map.draw(canvas, view)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
         draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
         self.trails.draw(canvas, view, self.shown, _CLEAR.head)
-        self.stage.draw_swarm(canvas, view, poses, others, size)
+        draw_crowd(canvas, view, poses[others], size)
         self._draw_shown(canvas, view, poses[self.shown])
         self.stage.draw_dust(canvas, view, between)
 

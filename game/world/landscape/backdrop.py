@@ -203,16 +203,7 @@ def _scaled(picture: pygame.Surface, times: float) -> pygame.Surface:
     return pygame.transform.smoothscale(picture, [max(1, round(times * side)) for side in picture.get_size()])
 
 
-def landscape(size: tuple[int, int], reduced_motion: bool, look: str = "moon") -> Backdrop:
-    """Return the game's landscape at that size under a theme; all scenes share it."""
-    return _paint_landscape(size, reduced_motion, look)  # positional: equal calls share a cache entry
-
-
 @lru_cache(maxsize=3)
-def _paint_landscape(size: tuple[int, int], reduced_motion: bool, look: str) -> Backdrop:
+def landscape(size: tuple[int, int], reduced_motion: bool, look: str) -> Backdrop:
+    """Return the game's landscape at that size under a theme; all scenes share it."""
     return Backdrop(size, np.random.default_rng(_MOON), reduced_motion, LOOKS[look])
-
-
-def forget_land() -> None:
-    """Forget what was painted, to measure how long it takes anew."""
-    _paint_landscape.cache_clear()

@@ -95,7 +95,5 @@ def _pool(pixels_per_metre: float, width: float, colour: Colour) -> tuple[WorldP
     shine = sum(np.exp(-(((x - side * width / 2) / 1.25) ** 2) - (y / 0.42) ** 2) for side in (-1, 1))
     fade = np.clip(1 - np.abs(y), 0, 1) * np.clip(1 - np.abs(x) / (width / 2 + 2.6), 0, 1)
     picture = light((0.30 * shine * fade)[..., None] * np.array(colour, np.float32))
-    return WorldPicture(picture, pixels_per_metre, _BLUR), (
-        half_width / pixels_per_metre,
-        half_height / pixels_per_metre,
-    )
+    reach = half_width / pixels_per_metre, half_height / pixels_per_metre
+    return WorldPicture(picture, pixels_per_metre, _BLUR), reach

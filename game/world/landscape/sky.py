@@ -48,12 +48,7 @@ def paint_sky(
     width, height = -(-size[0] // times), -(-size[1] // times)
     warm = mix(DUSK, EMBER, 0.14)
     top = _top(size)
-    night = [
-        (top, NIGHT0),
-        (0.30, NIGHT0),
-        (0.58, NIGHT1),
-        (0.73, mix(NIGHT1, DUSK, 0.8)),
-    ]
+    night = [(top, NIGHT0), (0.30, NIGHT0), (0.58, NIGHT1), (0.73, mix(NIGHT1, DUSK, 0.8))]
     column = ramp(height, [((share - top) / (1 - top), c) for share, c in (*night, (HORIZON, warm), (1.0, warm))])
     x, y = SUN[0] * width, (SUN[1] - top) / (1 - top) * height
     glows = [
@@ -108,8 +103,8 @@ def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[I
     spread = rng.uniform(-1, 1, count) * HORIZON
     start, slope, half = _BAND
     in_band = rng.random(count) < 0.4
-    down = np.where(in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count),
-                    top + np.abs(spread) * ((HORIZON - top) / HORIZON))  # fmt: skip
+    banded = start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count)
+    down = np.where(in_band, banded, top + np.abs(spread) * ((HORIZON - top) / HORIZON))
     seen = (down > top) & (down < HORIZON)
     rows = ((down[seen] - top) / (1 - top) * (height - 1)).astype(int)
     columns = (across[seen] * (width - 1)).astype(int)
@@ -138,8 +133,8 @@ class NearStars:
         unit = height / 720
         kinds = np.round(size_of * 5).astype(int)
         stars = [_star(kind, unit) for kind in range(6)]
-        sprites = [[light(star * np.float32(level / self.LEVELS)) for level in range(1, self.LEVELS + 1)]
-                   for star in stars]  # fmt: skip
+        shares = np.arange(1, self.LEVELS + 1, dtype=np.float32) / self.LEVELS
+        sprites = [[light(star * share) for share in shares] for star in stars]
         self._rows = [sprites[kind] for kind in kinds.tolist()]
         self._half = np.array([row[0].get_width() // 2 for row in self._rows])
         self._seen: Ints = np.zeros(0, np.intp)  # the stars that the last words left free,
@@ -226,9 +221,8 @@ def _surface(y: Picture, z: Picture, day: Picture, land: Picture, veil: Picture)
     sea = np.array((20, 66, 138), np.float32)
     picture = np.broadcast_to(sea, (*shape, 3)).copy()
     shore = _step(land, 0.10, 0.16)[..., None]
-    soil = np.array((74, 104, 66), np.float32) + np.clip(land - 0.25, 0, 1)[..., None] * np.array(
-        (150, 96, 30), np.float32
-    )
+    green, dry = np.array((74, 104, 66), np.float32), np.array((150, 96, 30), np.float32)
+    soil = green + np.clip(land - 0.25, 0, 1)[..., None] * dry
     picture += shore * (soil - picture)
     shallow = (_step(land, -0.06, 0.12) * (1 - shore[..., 0]))[..., None]
     picture += 0.35 * shallow * (np.array((58, 132, 178), np.float32) - picture)

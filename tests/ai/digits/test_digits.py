@@ -4,16 +4,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from ai.digits.classifier import (
-    DigitClassifier,
-    MnistError,
-    load_mnist,
-    load_part,
-    preprocess,
-    preprocess_strokes,
-    stages,
-)
-from ai.digits.mnist import FOLDER
+from ai.digits import DigitClassifier, MnistError, load_mnist, preprocess
+from ai.digits.mnist import FOLDER, load_part
+from ai.digits.preprocessing import preprocess_strokes, stages
 from ai.digits.strokes import draw_strokes
 from ai.nn import (
     ActivationFunctions,

@@ -3,8 +3,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from ai.digits.classifier import preprocess, preprocess_strokes
-from ai.digits.preprocessing import redrawn, stroke_stages
+from ai.digits.preprocessing import preprocess, preprocess_strokes, redrawn, stroke_stages
 from ai.digits.strokes import draw_segments, draw_strokes, spaced
 
 WAVE = np.stack([np.linspace(20, 90, 200), 60 + 25 * np.sin(np.linspace(0, 7, 200))], axis=1)

@@ -2,6 +2,7 @@
 
 import inspect
 import pickle
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -58,7 +59,7 @@ def minibatch(before, cell):
 def unobserved(before, cell, agent):
     """The same step by an agent that nobody looks at: it is handed the same minibatch, and learns."""
     cells, _ = minibatch(before, cell)
-    twin = DeepQAgent(9, 6, before.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
+    twin = DeepQAgent(9, 6, before.agent.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
                       symmetry=LANDER_SYMMETRY, replay=Drawn(cells, before.weights))  # fmt: skip
     twin.copy_from(agent)
     twin.learn()
@@ -71,7 +72,7 @@ def case(request):
     before = Before.of(agent, np.random.default_rng(1))
     cell = Transition(*(part[0] for part in agent.replay.at(np.array([7]))))
     state = agent.online.values.copy(), agent.optimizer.state(), agent.rng.bit_generator.state
-    lesson = explain(before, cell, agent)
+    lesson = explain(before, cell)
     return agent, before, cell, lesson, state
 
 
@@ -123,12 +124,13 @@ def test_the_network_is_shown_as_it_ran(case):
 
 
 def test_the_shares_of_all_memories_add_up_to_the_gradient(case):
-    agent, before, cell, lesson, _ = case
-    config, size = before.config, len(before.weights)
+    _, before, cell, lesson, _ = case
+    config, size = before.agent.config, len(before.weights)
     # A minibatch in which the same memory is drawn every time: each brings the same share.
     cells = Transition(*(np.repeat(np.asarray(part)[None], size, axis=0) for part in cell))
-    again = replace(before, cells=cells, weights=np.ones(size, np.float32), config=replace(config, mirror=False))
-    lesson = explain(again, cell, agent)
+    plain = copy(before.agent)
+    plain.config = config.changed(mirror=False)
+    lesson = explain(Before(plain, cells, np.ones(size, np.float32)), cell)
     unclipped = lesson.step.gradient * max(1.0, lesson.step.gradient_length / config.gradient_clip)
     np.testing.assert_allclose(size * lesson.step.share, unclipped, rtol=2e-3, atol=1e-6)
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import OBSERVATION_SCALE, LanderEnv, Outcome
-from ai.lander.pilots import LaggyPilot, NoisyPilot, NoPilot, ScriptedPilot, SensorPilot
+from ai.lander.pilots import LaggyPilot, NoisyPilot, ScriptedPilot, SensorPilot
 from ai.training.tasks import evaluate
 
 
@@ -58,4 +58,3 @@ def test_the_sensor_pilot_only_steers_towards_the_pad():
     observation = np.zeros((3, 9), dtype=np.float32)
     observation[:, 0] = np.array([2.0, -2.0, 0.05]) * OBSERVATION_SCALE[0]
     assert SensorPilot().act(observation).tolist() == [1, 2, 0]
-    assert NoPilot().act(observation).tolist() == [0, 0, 0]

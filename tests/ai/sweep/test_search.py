@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("optuna")
 
 from ai.sweep.plan import Point
-from ai.sweep.search import JOURNAL, LEAST, Search
+from ai.sweep.search import LEAST, Proposals
 from ai.sweep.study import FinishedTrial, SeedResult, Study
 from tests.support.studies import tiny_plan
 
@@ -22,7 +22,7 @@ def finished(number, params, value, at=400, curve=()):
 def study(tmp_path):
     """A study with a finished trial and two that are under way."""
     study = Study.create(tmp_path / "study", tiny_plan(trials=9))
-    search = Search(study)
+    search = Proposals(study)
     for _ in range(3):
         study.begin(search.next())
     trial = finished(0, study.under_way[0].params, 5.0)
@@ -35,7 +35,7 @@ def test_what_was_under_way_goes_on_with_its_settings(study):
     kept = [study.under_way[number] for number in (1, 2)]
     for _ in range(2):
         again = Study.load(study.folder)
-        search = Search(again)
+        search = Proposals(again)
         assert [search.next(), search.next()] == kept
         new = search.next()
         assert new.number == 3
@@ -44,7 +44,7 @@ def test_what_was_under_way_goes_on_with_its_settings(study):
 
 def test_a_study_that_goes_on_proposes_nothing_twice(study):
     again = Study.load(study.folder)
-    search, asked = Search(again), [study.trials[0].params]
+    search, asked = Proposals(again), [study.trials[0].params]
     for number in range(1, 9):
         trial = search.next()
         assert trial.number == number
@@ -62,7 +62,7 @@ def test_a_trial_that_was_kept_or_is_damaged_is_not_run_again(study):
     study.trial_folder(2).mkdir()
     again = Study.load(study.folder)
     assert (sorted(again.trials), again.damaged, again.under_way) == ([0, 1], [2], {})
-    search = Search(again)
+    search = Proposals(again)
     assert search.next().number == 3
     assert [row.value for row in search._optuna.trials[:2]] == [5.0, 7.0]
 
@@ -86,7 +86,7 @@ def test_what_a_file_says_of_trials_under_way_is_checked(study):
 
 def test_a_trial_that_falls_behind_is_ended_also_when_the_study_goes_on(tmp_path):
     study = Study.create(tmp_path / "study", tiny_plan(trials=9, stop_early=True, budget=1800, every=200))
-    search, ended = Search(study), []
+    search, ended = Proposals(study), []
     for value in (1.0, 9.0, 8.0, 0.5, 0.4, 10.0):
         asked = search.next()
         trial = finished(asked.number, asked.params, value, at=200, curve=[Point(200, None, value)])
@@ -96,13 +96,13 @@ def test_a_trial_that_falls_behind_is_ended_also_when_the_study_goes_on(tmp_path
         study.record(trial, {})
         search.tell(trial)
     assert ended == [False, False, True, True, True, False]
-    again = Search(Study.load(study.folder))
+    again = Proposals(Study.load(study.folder))
     asked = again.next()
     assert again.falls_behind(finished(asked.number, asked.params, 7.0, at=200))
     asked = again.next()
     assert not again.falls_behind(finished(asked.number, asked.params, 11.0, at=200))
     study.plan = replace(study.plan, stop_early=False)
-    plain = Search(study)
+    plain = Proposals(study)
     asked = plain.next()
     assert not plain.falls_behind(finished(asked.number, asked.params, -9.0))
 
@@ -114,7 +114,7 @@ def test_the_knob_that_decides_matters_most_and_too_few_trials_say_nothing(tmp_p
         (LEAST, lambda params: 1.0, None),
     ):
         study = Study.create(tmp_path / f"{count}", tiny_plan(trials=count, search="random"))
-        search = Search(study)
+        search = Proposals(study)
         while asked := search.next():
             trial = finished(asked.number, asked.params, value_of(asked.params))
             study.trials[asked.number] = trial
@@ -122,15 +122,3 @@ def test_the_knob_that_decides_matters_most_and_too_few_trials_say_nothing(tmp_p
         shares = search.importance()
         assert next(iter(shares), None) == best, count
         assert sum(shares.values()) == pytest.approx(1.0 if best else 0.0)
-
-
-def test_optunas_own_tools_read_the_journal_and_we_do_not(study):
-    import optuna
-
-    journal = study.folder / JOURNAL
-    journal.write_text('{"op_code": 99}\nno line of a journal')
-    Search(Study.load(study.folder)).next()
-    storage = optuna.storages.JournalStorage(optuna.storages.journal.JournalFileBackend(str(journal)))
-    done, begun = optuna.load_study(study_name=study.folder.name, storage=storage).trials
-    assert (done.value, begun.state.name) == (5.0, "RUNNING")
-    assert done.params["tau"] == study.trials[0].params["tau"]

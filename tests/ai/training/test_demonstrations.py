@@ -9,10 +9,11 @@ from ai.lander.environment import LanderEnv
 from ai.lander.ground import hilly
 from ai.lander.pilots import ScriptedPilot
 from ai.training.config import PRESETS
-from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, teach, write
+from ai.training.demonstrations import MOST, Demonstration, read, relive, takeover, teach, write
 from ai.training.history import SettingChange
 from ai.training.lander_session import TAUGHT, LanderSession
 from ai.training.messages import NetworkState, Refused, SwarmState
+from tests.support.demonstrated import demonstrate
 
 MODERN = PRESETS["modern"]
 

@@ -29,48 +29,33 @@ def focus(game: Driver, label: str) -> None:
     game.form.focus(widget)
 
 
-def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
+def test_menus_toggles_sliders_and_the_mouse_are_heard(sound: Listener, open_game):
     game: Driver = open_game(MenuScene)
-    sound.heard()
-    game.key(DOWN)
-    assert sound.heard() == ["move"]
-    game.keys(UP, UP, UP)  # round to Quit, then Settings
-    sound.heard()
-    game.key(ENTER)
-    assert sound.heard() == ["choose"]
-    game.key(pygame.K_ESCAPE)
-    assert sound.heard() == ["back"]
-
-
-def test_the_mouse_is_heard_when_it_presses_not_when_it_passes(sound: Listener, open_game):
-    game: Driver = open_game(SettingsScene)
-    first, second = (game.widget(texts.SETTINGS[name][0]).box.center for name in ("full_screen", "show_hints"))
-    game.move(first)
-    game.move(second)
-    sound.heard()
-    game.move(first)
-    game.move(second)
-    assert sound.heard() == []
-    game.click(second)
-    assert sound.heard() == ["adjust"]
-    game.click((1100, 600))  # nothing is there
-    assert sound.heard() == []
-
-
-def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_game):
-    game: Driver = open_game(SettingsScene)
+    for key, heard in ((DOWN, "move"), (UP, "move"), (ENTER, "choose"), (pygame.K_ESCAPE, "back")):
+        sound.heard()
+        game.key(key)
+        assert sound.heard() == [heard]
+    game = open_game(SettingsScene)
     focus(game, texts.SETTINGS["reduced_motion"][0])
     sound.heard()
     game.key(ENTER)
     assert sound.heard() == ["adjust"]
     game.key(RIGHT)  # it is on already, so the arrow leads on
     assert sound.heard() == ["move"]
+    first, second = (game.widget(texts.SETTINGS[name][0]).box.center for name in ("full_screen", "show_hints"))
+    game.move(first)
+    game.move(second)
+    assert sound.heard() == [], "a mouse that passes"
+    game.click(second)
+    assert sound.heard() == ["adjust"]
+    game.click((1100, 600))  # nothing is there
+    assert sound.heard() == []
     game = open_game(SettingsScene, "sound")
     focus(game, texts.SOUND_GROUPS["interface"])
     sound.heard()
-    for heard in [["adjust"]] * 3 + [[]]:  # clicks, from 70 % up to all there is
+    for adjusted in (True, True, True, False):  # clicks, from 70 % up to all there is
         game.key(RIGHT)
-        assert sound.heard() == heard
+        assert sound.heard() == ["adjust"] * adjusted
 
 
 def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(sound: Listener, context, open_game):
@@ -102,9 +87,7 @@ def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
     assert "to_human" in sound.heard()
 
 
-@pytest.mark.parametrize(
-    "make", [partial(PlayScene, seed=4), partial(WatchScene, count=1, seed=4), partial(WatchScene, count=16, seed=4)]
-)
+@pytest.mark.parametrize("make", [partial(PlayScene, seed=4), partial(WatchScene, count=16, seed=4)])
 def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, open_game, make, monkeypatch):
     asked: list[dict[str, float]] = []
     monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))
@@ -122,14 +105,3 @@ def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, ope
     asked.clear()
     game.frames(3)
     assert asked == [{}, {}, {}]
-
-
-def test_the_game_follows_volumes_and_focus(sound: Listener, context, open_game, monkeypatch):
-    events, followed = [], []
-    monkeypatch.setattr(sound, "handle_event", lambda event: events.append(event.type))
-    monkeypatch.setattr(sound, "follow", followed.append)
-    game: Driver = open_game(SettingsScene)
-    game.post(pygame.WINDOWFOCUSLOST)
-    assert pygame.WINDOWFOCUSLOST in events
-    game.app.apply_settings()
-    assert followed == [context.settings] * 2

@@ -108,16 +108,10 @@ def test_the_same_sound_twice_at_once_is_one(sound: Sound):
     sound.play("bell")
     sound.play("bell")
     assert voices() == 1
-    steps(sound, 3)
-    sound.play("bell")
-    assert voices() == 2
-
-
-def test_more_sounds_than_voices_are_no_error(sound: Sound):
     for _ in range(40):
-        sound.play("bell")
         steps(sound, 3)
-    assert voices() == pygame.mixer.get_num_channels() - FIRST_VOICE
+        sound.play("bell")
+    assert voices() == pygame.mixer.get_num_channels() - FIRST_VOICE, "more than voices are no error"
 
 
 def test_an_instrument_that_fails_is_not_heard_and_the_others_are(sound: Sound):
@@ -147,16 +141,12 @@ def test_a_window_not_in_use_is_silent(sound: Sound, event: pygame.event.Event):
 
 def test_a_device_that_goes_leaves_the_game_on_the_next_one(sound: Sound):
     steps(sound, 30, engine=1.0)
+    sound.handle_event(pygame.event.Event(pygame.AUDIODEVICEREMOVED, which=2, iscapture=1))  # a microphone
+    assert level(ENGINE) > 0.9
     sound.play("bell")
     sound.handle_event(REMOVED)
     assert sound.ready
     steps(sound, 30, engine=1.0)
-    assert level(ENGINE) > 0.9
-
-
-def test_a_microphone_that_goes_changes_nothing(sound: Sound):
-    steps(sound, 30, engine=1.0)
-    sound.handle_event(pygame.event.Event(pygame.AUDIODEVICEREMOVED, which=2, iscapture=1))
     assert level(ENGINE) > 0.9
 
 
@@ -173,22 +163,6 @@ def test_the_last_device_that_goes_leaves_silence_until_one_comes(sound: Any, mo
     assert not sound.problem
     steps(sound, 30, engine=1.0)
     assert level(ENGINE) > 0.9
-
-
-def test_no_device_is_silence_with_a_reason_and_the_next_look_finds_one(monkeypatch):
-    monkeypatch.setenv("SDL_AUDIODRIVER", "nonesuch")
-    sound: Any = Sound(INSTRUMENTS)
-    assert not sound.open()
-    assert sound.problem
-    sound.play("bell")
-    steps(sound, 3, engine=1.0)
-    for event in (LOST, REMOVED, GAINED):
-        sound.handle_event(event)
-    assert not sound.ready
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-    sound.handle_event(GAINED)
-    assert sound.ready
-    sound.close()
 
 
 def test_a_mixer_that_fails_meanwhile_is_let_go(sound: Sound):

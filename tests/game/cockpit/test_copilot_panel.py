@@ -3,10 +3,13 @@ import pygame
 import pytest
 
 from ai.copilot.copilot import Mode
+from ai.lander.environment import Cause, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.explain.landings import Landing, Landings, RecentLandings
+from game.explain.readouts import GAUGES, Readout, at_touch, flight_readouts
 from game.flight.flight import Flight
+from game.flight.outcomes import cause_of, outcome_card, struck_side
 from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
 from tests.support.reading import Weighs
@@ -19,25 +22,23 @@ class Wavers(Weighs):
         return np.sin(1e4 * observation[:, :1] * np.arange(1, 7)).astype(np.float32)
 
 
-def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(subtests: pytest.Subtests):
+def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over():
     for before in range(8):
-        with subtests.test(before=before):
-            flight = Flight(3, Wavers(), shares=False)
-            copilot_panel = CopilotPanel(flight.env.ground)
-            for _ in range(before):
-                flight.step(3)
-                copilot_panel.follow(flight)
-            flight.hand_over()
-            seen = set()
-            for _ in range(20):
-                flight.step(0)
-                copilot_panel.follow(flight)
-                flown = flight.recording.actions[-1]
-                assert copilot_panel.shown
-                assert copilot_panel.values is not None
-                assert copilot_panel.values.flown == np.argmax(copilot_panel.values.points) == flown
-                seen.add(flown)
-            assert len(seen) > 1
+        flight = Flight(3, Wavers(), shares=False)
+        copilot_panel = CopilotPanel(flight.env.ground)
+        for _ in range(before):
+            flight.step(3)
+            copilot_panel.follow(flight)
+        flight.hand_over()
+        seen = set()
+        for _ in range(20):
+            flight.step(0)
+            copilot_panel.follow(flight)
+            flown = flight.recording.actions[-1]
+            assert copilot_panel.shown
+            assert copilot_panel.values.flown == np.argmax(copilot_panel.values.points) == flown, before
+            seen.add(flown)
+        assert len(seen) > 1
 
 
 class Damaged(Wavers):
@@ -79,3 +80,50 @@ def test_rows_that_are_not_known_anew_stay_for_half_a_second():
     shown = [recent.fill(Landings(unknown, (2, Landing.UNKNOWN), 1, 0.1)).after[:2] for _ in range(8)]
     assert shown[:7] == [(Landing.LOST, Landing.LANDS)] * 7
     assert shown[7] == (Landing.UNKNOWN, Landing.LANDS)
+
+
+# The reason of a crash names what was beyond its limit, and the read-outs mark the same.
+
+FIGURES = {gauge.cause: name for name, gauge in GAUGES.items() if gauge.cause}
+
+
+def dropped(start: tuple[float, ...]) -> tuple[Flight, dict[str, Readout]]:
+    """Let a craft fall from a start; return its flight, and the read-outs that stay at the end."""
+    flight, last = Flight(1), dict[str, Readout]()
+    flight.env.place(np.ones(1, bool), np.array([start]))
+    while not flight.over:
+        last = flight_readouts(flight.env)
+        flight.step(0)
+    return flight, at_touch(last, flight.env)
+
+
+def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
+    rng, seen = np.random.default_rng(0), 0
+    for _ in range(60):
+        pad = Flight(1).env.ground.pads[0]
+        aside = rng.choice([-1, 1]) * (pad.width / 2 + rng.uniform(-0.5, 2.0))
+        flight, readouts = dropped((
+            pad.x + aside, pad.top + rng.uniform(2, 5), rng.uniform(-3, 3), -rng.uniform(0, 5),
+            rng.uniform(-0.6, 0.6), rng.uniform(-1, 1),
+        ))  # fmt: skip
+        cause = cause_of(flight.env)
+        if flight.outcome is not Outcome.CRASHED or flight.intact or cause not in FIGURES:
+            continue
+        seen += 1
+        if struck_side(flight.env):
+            assert not all(readouts[name].within for name in ("descent", "drift"))
+        else:
+            named = readouts[FIGURES[cause]]
+            assert named.within is False
+            if cause is not Cause.TILTED:
+                figure = float(outcome_card(flight.env, 1.0).reason.split("at ")[-1].split()[0])
+                assert float(named.figure) == pytest.approx(figure, abs=0.051)
+    assert seen > 30
+
+
+def test_a_landing_and_a_soft_touch_mark_nothing():
+    pad = Flight(1).env.ground.pads[0]
+    for x in (pad.x, pad.x + pad.width):
+        flight, readouts = dropped((x, pad.top + 1.5, 0.0, -0.2, 0.0, 0.0))
+        assert not flight.wrecked
+        assert all(readouts[name].within for name in FIGURES.values())

@@ -1,12 +1,25 @@
+from collections.abc import Callable
+
 import numpy as np
+import pygame
 import pytest
 
 from ai.copilot.copilot import Mode
-from ai.lander.environment import Outcome
+from ai.lander.environment import PARAMS, Outcome
+from game.core import texts
+from game.core.settings import SettingsFile
+from game.flight import networks
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
-from game.flight.forecast import coast_path, surface_height
 from game.flight.handicap import HANDS, OWN, Handicap
+from game.flight.logbook import Records
+from game.scenes.play.help import HELP, word_of
+from game.scenes.play.interventions import difference
+from game.scenes.play.scene import PlayScene
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import play
 from tests.support.reading import Weighs
+from tests.support.written import words_written
 
 COAST, LEFT, RIGHT, MAIN = range(4)
 
@@ -76,9 +89,8 @@ def test_a_tap_of_one_step_is_heard_at_once_and_let_go_at_once():
     assert flight.env.actions[0] == MAIN
 
 
-@pytest.mark.parametrize("pads", [1, 3])
-def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_engine(pads: int):
-    flight = shared(assist=0.5, pads=pads)
+def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_engine():
+    flight = shared(assist=0.5, pads=3)
     for turn in range(100):
         if turn % 10 == 0:
             flight.env.place(np.ones(1, bool), np.array([[0.0, 20.0, 0.0, 0.0, 0.0, 0.0]]))
@@ -97,8 +109,7 @@ def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_eng
     assert len(flight.recording.actions) == len(flight.recording.hands) == 101
 
 
-@pytest.mark.parametrize("hands", HANDS)
-@pytest.mark.parametrize("pads", [1, 3])
+@pytest.mark.parametrize(("hands", "pads"), [*zip(HANDS, (1, 3, 1, 3), strict=True)])
 def test_the_same_seed_and_keys_are_the_same_flight_and_the_recording_flies_it_again(hands: str, pads: int):
     flights = []
     for _ in range(2):
@@ -133,9 +144,7 @@ def test_other_hands_bring_keys_late_wrong_or_in_part_and_ones_own_bring_them_as
 
 
 def test_a_landing_on_any_of_three_pads_counts_and_read_outs_turn_to_it():
-    flight = Flight(4, pads=3)
-    assert len(flight.env.ground.pads) == 3
-    for number, pad in enumerate(flight.env.ground.pads):
+    for number, pad in enumerate(Flight(4, pads=3).env.ground.pads):
         flight = Flight(4, pads=3)
         flight.env.place(np.ones(1, bool), np.array([[pad.x, pad.top + 0.97, 0.0, 0.0, 0.0, 0.0]]))
         for _ in range(60):
@@ -154,12 +163,115 @@ def test_the_network_flies_to_the_nearest_pad_when_nothing_says_another():
         assert flight.env.target[0] == number
 
 
-def test_the_path_ahead_ends_on_the_hills_and_heights_are_the_grounds():
-    flight = Flight(4, pads=3)
-    path = coast_path(flight.env)
-    ground = flight.env.ground
-    assert (path[:-1, 1] >= ground.height(path[:-1, 0]) + 0.9).all()
-    assert abs(path[-1, 1] - ground.height(path[-1, 0]) - 0.96) < 0.25
-    for x in np.linspace(-18.0, 18.0, 200):
-        near = ground.height(np.array([x - 0.02, x, x + 0.02]))
-        assert near.min() - 0.02 <= surface_height(flight.env, float(x)) <= near.max() + 0.02
+Open = Callable[..., Driver]
+
+
+@pytest.fixture(autouse=True)
+def flown_by(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Wants()))
+
+
+def fly(open_game: Open, context: Context, **settings: object) -> Driver:
+    for name, value in settings.items():
+        setattr(context.settings, name, value)
+    context.settings_file.save(context.settings)
+    driver = open_game(PlayScene, seed=4)
+    driver.frames(2)
+    return driver
+
+
+def down(driver: Driver, key: int) -> None:
+    driver.post(pygame.KEYDOWN, key=key, mod=0, unicode="", scancode=0)
+
+
+def up(driver: Driver, key: int) -> None:
+    driver.post(pygame.KEYUP, key=key, mod=0, unicode="", scancode=0)
+
+
+def start_at(driver: Driver, *start: float) -> None:
+    play(driver).flown.waiting = False
+    play(driver).flight.env.place(np.ones(1, bool), np.array([start]))
+
+
+def test_help_is_chosen_by_keys_wheel_click_and_stick_and_kept(open_game: Open, context: Context):
+    driver = fly(open_game, context)
+    settings = driver.app.context.settings
+    for key, word in ((pygame.K_PLUS, "guard"), (pygame.K_PLUS, "guide"), (pygame.K_PLUS, "guide"),
+                      (pygame.K_MINUS, "guard"), (pygame.K_MINUS, "off"), (pygame.K_MINUS, "off")):  # fmt: skip
+        driver.key(key)
+        assert word_of(settings) == word
+    driver.post(pygame.MOUSEWHEEL, x=0, y=3)
+    assert word_of(settings) == "guard"
+    for value in (30000, 0):
+        driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, value)
+    assert word_of(settings) == "guide"
+    boxes = play(driver)._head.help_boxes(driver.app.canvas.reading)
+    driver.click(boxes["guard"].center)
+    driver.key(pygame.K_ESCAPE)  # in the pause, it has been saved
+    driver.app.settings_writer.wait()
+    saved = SettingsFile(context.user_dir).load()
+    assert (saved.assist, saved.copilot) == (HELP["guard"], "guardian")
+    driver.key(pygame.K_ESCAPE)
+    assert play(driver).waiting  # none of that has begun the flight
+
+
+def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Open, context: Context, monkeypatch):
+    driver = fly(open_game, context, assist=0.5)
+    start_at(driver, 0, 16, 0, 0, 0, 0)
+    driver.frames(6)
+    flight, shown = play(driver).flight, play(driver).flown.interventions
+    assert flight.env.actions[0] == MAIN
+    assert shown.lamp(flight)[0] == "ring"
+    down(driver, pygame.K_LEFT)
+    driver.frames(6)
+    assert flight.env.actions[0] == LEFT
+    assert shown.lamp(flight)[0] == "circle"
+    assert not shown.moments
+    up(driver, pygame.K_LEFT)
+    words = words_written(monkeypatch)
+    down(driver, pygame.K_RIGHT)
+    driver.frames(6)
+    assert flight.env.actions[0] == MAIN
+    assert shown.lamp(flight)[0] == "diamond"
+    assert len(shown.moments) == 1
+    assert difference(RIGHT, MAIN) == "The network flies main, not right"
+    assert difference(RIGHT, MAIN) in words
+    assert texts.COPILOT_PANEL_WHY["COPILOT"] not in words  # the panel is for those who ask
+    driver.key(pygame.K_F1)
+    driver.frames(4)
+    assert texts.COPILOT_PANEL_WHY["COPILOT"] in words
+
+
+def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_game: Open, context: Context, monkeypatch):
+    driver = fly(open_game, context, assist=0.5)
+    start_at(driver, 0, 5, 0, -1.0, 0, 0)
+    down(driver, pygame.K_RIGHT)
+    driver.frames(3)
+    driver.app.context.settings.assist = 0.0
+    up(driver, pygame.K_RIGHT)
+    start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
+    words = words_written(monkeypatch)
+    driver.frames(140)
+    assert play(driver).flight.outcome is Outcome.LANDED
+    you = round(100 * play(driver).flight.share)
+    assert 0 < you < 100
+    assert texts.SHARE_YOU.format(percent=you) in words
+    assert texts.SHARE_NETWORK.format(who=texts.THE_NETWORK, percent=100 - you) in words
+    assert texts.CARD_SAVED[1] in words
+    assert Records(context.user_dir).entries()[-1].alone is False
+
+
+def test_choices_are_made_and_the_waiting_flight_follows(open_game: Open, context: Context):
+    driver = fly(open_game, context)
+    driver.key(pygame.K_c)
+    for label in (texts.CHOICES_HELP, texts.CHOICES_PADS, texts.CHOICES_HANDS):
+        driver.frames(2)
+        driver.click(driver.widget(label)._places[1].center)
+    driver.key(pygame.K_ESCAPE)
+    settings = driver.app.context.settings
+    assert word_of(settings) == "guard"
+    assert settings.three_pads
+    assert settings.hands == "laggy"
+    assert play(driver).waiting
+    assert len(play(driver).flight.env.ground.pads) == 3
+    assert play(driver).challenge.hands == "laggy"

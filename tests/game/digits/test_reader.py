@@ -1,11 +1,12 @@
+import time
 from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pygame
 import pytest
 
+from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import load_part
 from ai.digits.preprocessing import redrawn
 from game.core import texts
@@ -15,7 +16,7 @@ from game.drawing.cursor import Cursor
 from game.scenes.digits.answer import write_answer
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.reader import Reader, Reading, Switches, Verdict, best_two
-from game.scenes.digits.scene import fix_lines
+from tests.support import inline_worker
 
 
 @pytest.fixture(scope="module")
@@ -106,12 +107,88 @@ def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest
     assert said[texts.DIGITS_DISPUTED.partition(",")[0]]  # where they disagree, it is called neither
 
 
-def test_the_digit_that_is_being_learnt_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    fixing = FixRunner(tmp_path, MODELS_DIR)
-    monkeypatch.setattr(
-        "game.scenes.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda _: None)
-    )
-    for digit in (7, 3):
-        assert fixing.begin("modern", np.zeros((28, 28), np.float32), digit)
-        assert texts.DIGITS_FIXING.format(digit=digit) in fix_lines(fixing, same=True)
-        fixing.close()
+# Fix it, with a real process beside the window.
+
+
+@pytest.fixture(scope="module")
+def misread():
+    images, labels = load_part("test")
+    images, labels = images[:1000], labels[:1000]
+    read = DigitClassifier.load(MODELS_DIR / "digits" / "classic").predict(images).argmax(axis=1)
+    wrong = np.flatnonzero(read != labels)[0]
+    return images[wrong], int(labels[wrong])
+
+
+@pytest.fixture
+def fixing(tmp_path: Path):
+    fixing = FixRunner(tmp_path / "user", MODELS_DIR)
+    yield fixing
+    fixing.close()
+
+
+def done(fixing: FixRunner, seconds: float = 60):
+    end = time.monotonic() + seconds
+    while fixing.busy:
+        assert time.monotonic() < end, "it never ended"
+        if fixed := fixing.poll():
+            return fixed
+        time.sleep(0.01)
+    return None
+
+
+def test_a_fix_is_kept_reported_and_undone_by_a_process_of_its_own(fixing: FixRunner, misread, tmp_path: Path):
+    image, digit = misread
+    shipped = fixing.folder("classic")
+    assert fixing.begin("classic", image, digit)
+    assert not fixing.begin("classic", image, digit), "one at a time"
+    fixed = done(fixing)
+    assert fixed is fixing.fixed
+    assert fixed.accuracy[0] == pytest.approx(0.9861), "what is known is not measured again"
+    assert fixed.accuracy[1] == pytest.approx(fixed.accuracy[0], abs=0.02)
+    folder = fixing.folder("classic")
+    assert folder.is_relative_to(tmp_path / "user")
+    assert fixing.folder("modern") == MODELS_DIR / "digits" / "modern"
+    assert DigitClassifier.load(folder).predict(image)[0].argmax() == digit
+    assert FixRunner(tmp_path / "user", MODELS_DIR).folder("classic") == folder, "the next visit finds it"
+    assert fixing.undo("classic")
+    assert fixing.folder("classic") == shipped
+    assert fixing.fixed is None
+    assert not fixing.undo("classic")
+
+
+def test_fixes_stand_upon_each_other_and_a_damaged_one_is_passed_over(
+    fixing: FixRunner, misread, monkeypatch: pytest.MonkeyPatch
+):
+    inline_worker.install(monkeypatch.setattr)
+    image, digit = misread
+
+    def read() -> int:
+        return int(DigitClassifier.load(fixing.folder("classic")).predict(image)[0].argmax())
+
+    fixing.begin("classic", image, digit)
+    done(fixing)
+    first = fixing.folder("classic")
+    first.with_name("0002").mkdir()
+    reader = Reader()
+    assert reader.load("classic", *fixing.networks["classic"].versions())
+    assert reader.sources["classic"] == first
+    assert "config.json" in reader.problems["classic"]
+    fixing.begin("classic", image, (digit + 1) % 10, first)
+    done(fixing)
+    assert not fixing.problem
+    assert fixing.folder("classic").name == "0003"
+    assert fixing.count("classic") == 3
+    assert read() == (digit + 1) % 10
+    assert fixing.undo("classic")
+    assert fixing.undo("classic")
+    assert fixing.folder("classic") == first
+    assert read() == digit
+
+
+def test_what_fails_is_said_and_changes_nothing(fixing: FixRunner, monkeypatch: pytest.MonkeyPatch):
+    inline_worker.install(monkeypatch.setattr)
+    fixing.begin("classic", np.zeros((28, 28), np.float32), 3)
+    assert done(fixing) is None
+    assert "nothing to learn from" in fixing.problem
+    assert not fixing.busy
+    assert fixing.folder("classic") == MODELS_DIR / "digits" / "classic"

@@ -1,11 +1,12 @@
 """Colours that mean something stay apart for every eye, and a shape always says the same."""
 
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pygame
 import pytest
 
+from game.drawing import shapes
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import (
     COLOUR_SAFE,
@@ -65,28 +66,21 @@ def contrast(a: Colour, b: Colour) -> float:
     return (bright + 0.05) / (dark + 0.05)
 
 
-@pytest.mark.parametrize("eye", EYES)
-def test_person_and_network_stay_apart(eye: str):
-    assert apart(HUMAN, NET, eye) > APART
+def test_what_means_something_stays_apart_for_every_eye_and_the_safe_palette_is_the_better_one():
+    for eye in EYES:
+        assert apart(HUMAN, NET, eye) > APART
+        for palette in (PALETTE, COLOUR_SAFE):
+            assert apart(palette.good, palette.warn, eye) > APART, eye
+    for eye in ("protanopia", "deuteranopia"):
+        usual, safe = (apart(palette.good, palette.warn, eye) for palette in (PALETTE, COLOUR_SAFE))
+        assert safe > 1.4 * usual, eye
 
 
-@pytest.mark.parametrize("eye", EYES)
-@pytest.mark.parametrize("palette", [PALETTE, COLOUR_SAFE])
-def test_good_and_beyond_limits_stay_apart(palette: Palette, eye: str):
-    assert apart(palette.good, palette.warn, eye) > APART
-
-
-@pytest.mark.parametrize("eye", ["protanopia", "deuteranopia"])
-def test_the_safe_palette_is_the_better_one_without_red_or_green(eye: str):
-    usual, safe = (apart(palette.good, palette.warn, eye) for palette in (PALETTE, COLOUR_SAFE))
-    assert safe > 1.4 * usual
-
-
-@pytest.mark.parametrize("ground", [NIGHT0, NIGHT1, PANEL])
-@pytest.mark.parametrize("palette", [PALETTE, COLOUR_SAFE])
-def test_what_is_written_can_be_read(ground: Colour, palette: Palette):
-    for colour in (INK, MUTE, HUMAN, NET, palette.good, palette.warn):
-        assert contrast(colour, ground) >= 4.5
+def test_what_is_written_can_be_read():
+    for ground in (NIGHT0, NIGHT1, PANEL):
+        for palette in (PALETTE, COLOUR_SAFE):
+            for colour in (INK, MUTE, HUMAN, NET, palette.good, palette.warn):
+                assert contrast(colour, ground) >= 4.5, (colour, ground)
 
 
 def test_the_model_of_the_eyes_does_what_it_says():
@@ -108,3 +102,50 @@ def test_within_and_beyond_differ_in_shape():
     assert all(mask.any() for mask in masks)
     for a, b in combinations(masks, 2):
         assert (a != b).sum() > 0.5 * min(a.sum(), b.sum())
+
+
+# Shapes that are copied from parts, tinted or scaled look as if they had been painted whole.
+
+GOLD = (255, 196, 112)
+
+
+def pixels(surface: pygame.Surface) -> np.ndarray:
+    return pygame.surfarray.array3d(surface).astype(int)
+
+
+def test_a_large_rectangle_has_the_corners_of_a_small_one_and_nothing_else():
+    for size, width in product([(200, 120), (57, 41), (20, 90)], [0, 2]):
+        cover = pygame.surfarray.array_alpha(shapes.rounded(size, 4.5, GOLD, width))
+        small = pygame.surfarray.array_alpha(shapes.rounded((min(12, size[0]), 12), 4.5, GOLD, width))
+        half = min(6, size[0] // 2)
+        assert (cover[:half, :6] == small[:half, :6]).all()
+        assert (cover[-half:, -6:] == small[-half:, -6:]).all()
+        assert (cover[:, 6:-6] == cover[:, size[1] // 2, None]).all()
+        assert cover[0, size[1] // 2] == 255
+        assert cover[size[0] // 2, size[1] // 2] == (0 if width and size[0] > 2 * width + 8 else 255)
+
+
+@pytest.mark.parametrize("fraction", [0.001, 0.31, 1.0])
+def test_a_bar_is_a_pill_of_its_length(fraction: float):
+    bar, pill = (Canvas(pygame.Surface((1920, 1080))) for _ in range(2))
+    bar.bar((100, 50, 120, 4), fraction, GOLD)
+    pill.pill((100, 50, 120, 4), (58, 68, 92), 0.6)
+    bare = Canvas(pygame.Surface((1920, 1080)))
+    bare.bar((100, 50, 120, 4), 0.0, GOLD)
+    pill.surface.blit(bare.surface, (0, 0))
+    pill.pill((100, 50, max(120 * fraction, 4), 4), GOLD)
+    assert np.abs(pixels(bar.surface) - pixels(pill.surface)).max() <= 2
+
+
+@pytest.mark.parametrize(("radius", "strength"), [(10, 0.2), (60, 0.8), (150, 1.0), (400, 2.6)])
+def test_a_glow_fades_outwards_alike_in_every_size(radius: int, strength: float):
+    canvas = Canvas(pygame.Surface((1280, 720)))
+    canvas.surface.fill((0, 0, 0))
+    canvas.glow((640, 360), radius, GOLD, strength)
+    across = np.arange(1280) - 640
+    size = 4 * round(radius / 4) if 24 <= radius < shapes.HUGE_GLOW else radius
+    fall = (1 - np.minimum(np.abs(across) / size, 1)) ** 2.4 * round(32 * strength) / 32
+    wanted = np.minimum(fall[:, None] * np.array(GOLD), 255)
+    near = 8 if radius < shapes.HUGE_GLOW else 8 + 30 * strength  # huge ones come in steps of an eighth
+    assert np.abs(pixels(canvas.surface)[:, 360] - wanted).max() <= near
+    assert pixels(canvas.surface)[640, 360].tolist() == pytest.approx(wanted[640].tolist(), abs=12)

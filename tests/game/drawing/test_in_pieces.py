@@ -1,6 +1,5 @@
 """Land takes longer to paint than a frame may last: it is rough at once, and whole a few frames later."""
 
-from collections import deque
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -8,17 +7,16 @@ import pygame
 import pytest
 
 from ai.lander.descent import LegStart, leg_of
-from game.drawing import letters, paint_cache
+from game.drawing import letters
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE
-from game.drawing.paint_cache import A_FRAME, idle, paint_on, painted, spread
-from game.drawing.sky import NightSky
+from game.drawing.paint_cache import A_FRAME, PaintCache, idle, paint_on, painted, spread
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.shell.app import App
 from game.world.camera import Camera, CameraTarget
-from game.world.landscape.backdrop import Backdrop, forget_land
+from game.world.landscape.backdrop import Backdrop, landscape
 from game.world.landscape.ground import begin_hills, draw_ground
 from game.world.landscape.themes import LOOKS, MOON
 from tests.support.descent import stand_on
@@ -33,12 +31,12 @@ MOST = A_FRAME + PIECE  # a piece is begun while the frame's share is not used u
 @pytest.fixture
 def in_pieces() -> Iterator[None]:
     """Play as in the game; tests of other things have each picture at once."""
-    forget_land()
+    landscape.cache_clear()
     finish()  # what other tests have left
     spread(A_FRAME)
     yield
     spread(0)
-    forget_land()
+    landscape.cache_clear()
 
 
 def finish() -> list[int]:
@@ -64,9 +62,7 @@ def land(size: tuple[int, int], look: str = "moon", leg: int = 0) -> Callable[[]
     return picture
 
 
-@pytest.mark.parametrize(
-    ("size", "look", "leg"), [((640, 360), "moon", 4), ((1290, 430), "mars", 0), ((500, 800), "night", 2)]
-)
+@pytest.mark.parametrize(("size", "look", "leg"), [((640, 360), "moon", 4), ((500, 800), "night", 2)])
 def test_in_pieces_the_same_picture_comes_of_it_as_at_once(in_pieces: None, size, look: str, leg: int):
     picture = land(size, look, leg)
     rough = picture()
@@ -78,15 +74,6 @@ def test_in_pieces_the_same_picture_comes_of_it_as_at_once(in_pieces: None, size
     assert np.array_equal(whole, land(size, look, leg)())
     assert np.abs(rough - whole).mean() < 3  # of 255: the same land, but for what is fine
     assert not np.array_equal(rough, whole)
-
-
-def test_where_nobody_goes_on_painting_it_is_whole_at_once(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(paint_cache, "_unfinished", deque())  # what other tests have left
-    picture = land((640, 360), leg=5)
-    before = picture()
-    assert idle()
-    assert paint_on() == 0
-    assert np.array_equal(before, picture())
 
 
 def costs(app: App, until: Callable[[], bool]) -> list[int]:
@@ -140,23 +127,9 @@ def test_the_window_may_change_its_size_while_its_land_is_painted(open_game: Ope
     driver.app.draw()
     whole = pygame.surfarray.array3d(driver.app.canvas.surface)
     spread(0)
-    forget_land()
+    landscape.cache_clear()
     driver.app.draw()
     assert np.array_equal(whole, pygame.surfarray.array3d(driver.app.canvas.surface))
-
-
-def test_a_minimised_window_paints_nothing_and_goes_on_afterwards(open_game: Open, context, in_pieces: None):
-    save_settings(context)
-    driver = open_game(MenuScene)
-    driver.frames(3)
-    driver.app.window.minimised = True
-    before = painted()
-    for _ in range(5):
-        driver.app.tick()
-    assert painted() == before
-    assert not idle()
-    driver.app.window.minimised = False
-    assert sum(costs(driver.app, idle)) > 0
 
 
 def test_land_that_nobody_wants_any_more_is_not_painted_on(in_pieces: None):
@@ -187,16 +160,27 @@ def test_letters_are_loaded_a_few_at_a_time_and_anew_for_another_size(in_pieces:
         assert idle(), "they are there"
 
 
-def test_the_night_is_rough_at_once_and_the_same_in_the_end(in_pieces: None):
-    canvas = Canvas(pygame.Surface((900, 500)))
-    night = NightSky(np.random.default_rng(3), ember=0.47, stars=20)
+# Pictures that are kept: painted when what they show changes, and only then.
 
-    def picture() -> np.ndarray:
-        night.draw(canvas)
-        return pygame.surfarray.array3d(canvas.surface).astype(int)
 
-    rough = picture()
-    assert not idle()
-    finish()
-    whole = picture()
-    assert 0 < np.abs(rough - whole).mean() < 2  # of 255
+def had_to_paint(kept: PaintCache, canvas: Canvas, *shown: object) -> list[object]:
+    """Return what of `shown` had to be painted."""
+    seen: list[object] = []
+    for each in shown:
+        kept.draw(canvas, (10, 20, 30, 40), each, lambda _, each=each: seen.append(each))  # type: ignore[misc]
+    return seen
+
+
+def test_what_has_not_changed_is_not_painted_again():
+    canvas = Canvas(pygame.Surface((1280, 720)))
+    assert had_to_paint(PaintCache(), canvas, "a", "a", "b", "b", "a") == ["a", "b", "a"]
+    assert had_to_paint(PaintCache(2), canvas, "a", "b", "a", "b", "c", "b", "a") == ["a", "b", "c", "a"]
+
+
+def test_another_scale_is_painted_anew_and_the_picture_stands_in_its_box():
+    kept = PaintCache()
+    for size in ((1280, 720), (640, 360)):
+        canvas = Canvas(pygame.Surface(size))
+        kept.draw(canvas, (100, 40, 20, 20), "dot", lambda sheet: sheet.fill(sheet.rect(5, 5, 2, 2), (255, 0, 0)))
+        lit = pygame.mask.from_threshold(canvas.surface, (255, 0, 0), (1, 1, 1)).get_bounding_rects()
+        assert lit == [canvas.rect(105, 45, 2, 2)]

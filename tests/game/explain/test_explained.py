@@ -1,18 +1,25 @@
 """Words and bars explain themselves: to the mouse, to keys and to a gamepad."""
 
+import inspect
 from collections.abc import Callable
+from itertools import product
+from typing import Any
 
 import numpy as np
 import pygame
 import pytest
 
+from ai.agent.agent import DeepQAgent
 from ai.lander.environment import ACTION_NAMES
+from ai.nn.layer import Layer
+from ai.training.loop import Training
 from game.core import texts
+from game.core.source import source_of
 from game.drawing.canvas import Canvas
+from game.explain.code_listing import draw_listing
 from game.explain.q_values import QValues, value_words
 from game.explain.readouts import PILOT
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.charts import LANDER_CHARTS, TrainingCharts
 from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver
 
@@ -48,7 +55,7 @@ def test_everything_in_watch_is_explained(watching: Driver):
     ]
     assert len(inputs) == 9
     for what in (
-        texts.EXPLAIN_WATCH, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE, texts.EXPLAIN_WHY,
+        texts.EXPLAIN_WATCH, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE,
         *(texts.EXPLAIN_READOUTS[name] for name in PILOT),
         *texts.EXPLAIN_CHOICES, texts.EXPLAIN_MAP[0],
     ):  # fmt: skip
@@ -80,43 +87,27 @@ def scene(driver: Driver) -> WatchScene:
     return driver.top
 
 
-@pytest.mark.parametrize("device", ["keys", "gamepad"])
-def test_one_key_goes_from_area_to_area(watching: Driver, written: list[str], device: str):
+def test_one_key_goes_from_area_to_area(watching: Driver, written: list[str]):
     scene(watching).playback.stopped = True
-
-    def press(key: int, button: int) -> None:
-        if device == "keys":
-            watching.key(key)
-        else:
-            watching.button(button)
-
     order = list(areas(watching))
-    press(pygame.K_F1, pygame.CONTROLLER_BUTTON_BACK)
-    assert shows(watching, written, order[0])
-    press(pygame.K_F1, pygame.CONTROLLER_BUTTON_BACK)
-    assert not shows(watching, written, order[0]), "the same key ends it"
-    press(pygame.K_F1, pygame.CONTROLLER_BUTTON_BACK)
-    press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
-    press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
-    press(pygame.K_LEFT, pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    assert shows(watching, written, order[1])
-    press(pygame.K_LEFT, pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    press(pygame.K_LEFT, pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    assert shows(watching, written, order[-1])
-    press(pygame.K_ESCAPE, pygame.CONTROLLER_BUTTON_B)
-    assert watching.top_name == "WatchScene"
-    assert not shows(watching, written, order[-1])
-    press(pygame.K_ESCAPE, pygame.CONTROLLER_BUTTON_START)
-    assert "PauseScene" in watching.top_name
-
-
-def test_explaining_stops_nothing(watching: Driver):
-    watching.key(pygame.K_F1)
+    for press, place in (
+        (lambda: watching.key(pygame.K_F1), 0),
+        (lambda: watching.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT), 1),
+        (lambda: watching.keys(pygame.K_RIGHT, pygame.K_LEFT), 1),
+        (lambda: watching.keys(pygame.K_LEFT, pygame.K_LEFT), -1),
+        (lambda: watching.keys(pygame.K_F1, pygame.K_F1), 0),  # the same key ends it
+    ):
+        press()
+        assert shows(watching, written, order[place])
     before = scene(watching).swarm.steps
-    watching.frames(10)
-    assert scene(watching).swarm.steps > before
     watching.key(pygame.K_PERIOD)  # and other keys do what they do
-    assert scene(watching).playback.stopped
+    watching.frames(3)
+    assert scene(watching).swarm.steps > before
+    watching.button(pygame.CONTROLLER_BUTTON_B)
+    assert watching.top_name == "WatchScene"
+    assert not shows(watching, written, order[0])
+    watching.key(pygame.K_ESCAPE)
+    assert "PauseScene" in watching.top_name
 
 
 def test_a_value_says_how_far_below_the_best_it_lies():
@@ -148,14 +139,38 @@ def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_paus
     assert shows(driver, written, explained[1])
 
 
-def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
-    canvas = Canvas(pygame.Surface((1280, 720)))
-    charts = TrainingCharts(more=True)
-    charts.place([pygame.FRect(40, 100 + 150 * row, 360, 112) for row in range(4)])
-    charts.draw(canvas)
-    explained = [area.what for area in canvas.explained]
-    assert {texts.EXPLAIN_CHARTS[name] for name in LANDER_CHARTS} <= set(explained)
-    assert explained.count(texts.EXPLAIN_AXES[0]) == len(charts.charts)
-    assert texts.EXPLAIN_CHART_NOW.format(value="–") in {area.now() for area in canvas.explained}
-    for area in canvas.explained:  # an explanation and the cursor of a chart do not meet
-        assert all(chart.x_at(area.box.center) is None for chart in charts.charts)
+# Listing of code: it shows the lines of the function that runs, and keeps the current one in sight.
+
+
+def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():
+    source = source_of(DeepQAgent.gradient_step)
+    lines, first = inspect.getsourcelines(DeepQAgent.gradient_step)
+    assert source.path == "ai/agent/agent.py"
+    assert source.name == "DeepQAgent.gradient_step"
+    assert source.lines[0][0] == first
+    for number, text in source.lines:
+        assert lines[number - first].strip() == text.strip()
+    assert not any('"""' in text for _, text in source.lines)
+
+
+@pytest.mark.parametrize("function", [Layer.single_step, Training.advance])
+def test_remarks_for_tools_are_not_shown(function):
+    raw = inspect.getsource(function)
+    assert "# noqa" in raw or "# fmt" in raw
+    shown = "\n".join(line for _, line in source_of(function).lines)
+    assert "# noqa" not in shown
+    assert "# fmt" not in shown
+
+
+def test_a_function_without_a_source_has_none():
+    assert source_of(len) is None
+
+
+def test_the_current_line_is_in_sight_however_little_room_there_is():
+    source = source_of(DeepQAgent.train_step)
+    for room, (number, _) in product((60, 400), source.lines):
+        canvas: Any = Canvas(pygame.Surface((1280, 720)))
+        written = []
+        canvas.text = lambda string, *_, **__: written.append(string)  # noqa: B023
+        draw_listing(canvas, (40, 40, 500, room), source, number)
+        assert str(number) in written

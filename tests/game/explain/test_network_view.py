@@ -4,19 +4,19 @@ import pytest
 
 from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES
-from ai.lander.rules import FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.explain.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
+from game.explain.network_plan import NetworkPlan, steady_choice, strongest_edges
 from game.explain.network_view import NetworkView
-from tests.support.state import state_of
 from tests.support.written import words_written
 
 BOX = (868, 420, 384, 180)
 LARGE = (90, 80, 1100, 560)
 OBSERVATION = np.linspace(-1, 1, 9)
+
+FEATURE_NAMES = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
 
 
 @pytest.fixture
@@ -76,14 +76,6 @@ def test_the_shown_units_do_not_flicker_as_learning_goes_on() -> None:
     assert changes <= 6
 
 
-def test_it_says_how_many_units_there_are() -> None:
-    view = view_of(network_of())
-    assert [column.total for column in view.columns] == [9, 64, 64, 6]
-    assert [len(column.units) for column in view.columns] == [9, 12, 12, 6]
-    view.place(LARGE)
-    assert len(view.columns[1].units) > 12
-
-
 def test_only_the_largest_links_are_drawn_and_the_largest_last() -> None:
     matrix = np.array([[0.5, -2.0], [0.1, 1.0]])
     edges = strongest_edges(matrix, 3, 3)
@@ -112,14 +104,6 @@ def test_edges_follow_what_is_to_be_shown() -> None:
     assert drawn("gradients") == [(2, 1, False)]  # learning goes down the gradient
 
 
-def test_a_plan_is_a_copy() -> None:
-    network = network_of()
-    plan = NetworkPlan(network, OBSERVATION, 12)
-    before = [edge.size for edge in plan.edges("weights", 50)]
-    network.values[:] = 7
-    assert [edge.size for edge in plan.edges("weights", 50)] == before
-
-
 def test_the_best_output_is_the_one_the_network_would_take() -> None:
     network = network_of()
     plan = NetworkPlan(network, OBSERVATION, 12)
@@ -132,6 +116,8 @@ def test_the_best_output_is_the_one_the_network_would_take() -> None:
 
 def test_a_unit_is_found_where_it_is_drawn_and_named() -> None:
     view = view_of(network_of())
+    assert [column.total for column in view.columns] == [9, 64, 64, 6]
+    assert [len(column.units) for column in view.columns] == [9, 12, 12, 6]
     for number, column in enumerate(view.centres):
         for place, centre in enumerate(column):
             assert view.unit_at(centre) == (number, place)
@@ -140,28 +126,6 @@ def test_a_unit_is_found_where_it_is_drawn_and_named() -> None:
     assert view.name(0, 3) == FEATURE_NAMES[3]
     assert view.name(3, 5) == ACTION_NAMES[5]
     assert str(view.columns[1].units[2] + 1) in view.name(1, 2)
-
-
-def test_the_hovered_unit_s_edges_stand_out(canvas: Canvas) -> None:
-    view = view_of(network_of())
-    edge = view.edges[-1]
-    plain = _light_along(view, canvas, edge)
-    view.hover(view.centres[edge.column][edge.start])
-    touched = _light_along(view, canvas, edge)
-    other = next(e for e in view.edges[::-1] if e.column == edge.column and e.start != edge.start)
-    view.hover(view.centres[other.column][other.start])
-    assert touched > plain > _light_along(view, canvas, edge)
-
-
-def _light_along(view: NetworkView, canvas: Canvas, edge: Edge) -> float:
-    """Return how bright the drawing is near the end of an edge, beyond the tooltip."""
-    play(view, canvas)
-    canvas.surface.fill((0, 0, 0))
-    view.draw(canvas)
-    (x0, y0), (x1, y1) = view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end]
-    x, y = x0 + 0.85 * (x1 - x0), y0 + 0.85 * (y1 - y0)
-    pixels = pygame.surfarray.array3d(canvas.surface)
-    return float(pixels[round(x) - 1 : round(x) + 2, round(y) - 2 : round(y) + 3].max(axis=(0, 1)).sum())
 
 
 # Drawing
@@ -180,21 +144,6 @@ def test_new_numbers_are_drawn_at_most_ten_times_a_second_and_old_ones_not_again
     redraws = view.redraws
     play(view, canvas)
     assert view.redraws == redraws
-
-
-def test_drawing_leaves_the_painting_to_steps(canvas: Canvas) -> None:
-    network = network_of()
-    view = view_of(network, LARGE)
-    view.show = "gradients"
-    view.draw(canvas)
-    for frame in range(40):
-        network.values[frame] += 1
-        view.set(network, OBSERVATION)
-        view.update()
-        before = state_of(view)
-        view.draw(canvas)
-        assert state_of(view) == before
-    assert view.redraws > 3
 
 
 def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> None:
@@ -216,21 +165,11 @@ def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> N
 
 
 @pytest.mark.parametrize(
-    "options",
-    [
-        {"hidden": (1,)},
-        {"hidden": (1024, 3)},
-        {"hidden": (16, 16, 16, 16, 16)},
-        {"dueling": True},
-        {"layer_normalisation": False, "activation": "tanh"},
-        {"activation": "leaky_relu"},
-        {"activation": "sigmoid"},
-    ],
-)
-@pytest.mark.parametrize("box", [BOX, LARGE, (10, 10, 60, 40)])
-def test_any_network_is_drawn_in_any_box(
-    canvas: Canvas, options: dict[str, object], box: tuple[int, int, int, int]
-) -> None:
+    ("options", "box"),
+    [({"hidden": (1,)}, BOX), ({"hidden": (1024, 3)}, LARGE), ({"hidden": (16, 16, 16, 16, 16)}, (10, 10, 60, 40)),
+     ({"dueling": True}, LARGE), ({"layer_normalisation": False, "activation": "tanh"}, BOX)],
+)  # fmt: skip
+def test_any_network_is_drawn_in_any_box(canvas: Canvas, options: dict[str, object], box: tuple[int, ...]) -> None:
     view = view_of(network_of(**options), box)
     for view.show in ("weights", "activations", "gradients"):
         play(view, canvas, 2)
@@ -238,16 +177,7 @@ def test_any_network_is_drawn_in_any_box(
     play(view, canvas, 8)
 
 
-@pytest.mark.parametrize("features", [1, 4, 40])
-def test_other_numbers_of_inputs_are_drawn(canvas: Canvas, features: int) -> None:
-    view = NetworkView(BOX, FEATURE_NAMES, ACTION_NAMES)
-    view.set(network_of(features, 2), np.ones(features))
-    play(view, canvas, 3)
-    assert view.columns[0].total == features
-    assert len(view.columns[0].units) == min(features, 12)
-
-
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 3e38])
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 3e38])
 def test_damaged_numbers_are_drawn_and_marked(canvas: Canvas, bad: float) -> None:
     network = network_of()
     network.values[::7] = bad
@@ -255,20 +185,20 @@ def test_damaged_numbers_are_drawn_and_marked(canvas: Canvas, bad: float) -> Non
     view = view_of(network)
     for view.show in ("weights", "activations", "gradients"):
         view.hover(view.centres[1][3])
-        play(view, canvas, 8)
+        play(view, canvas, 4)
     if not np.isfinite(bad):
         assert view.columns[1].damaged.any()
     view.set(network, np.full(9, bad))
     play(view, canvas, 8)
 
 
-@pytest.mark.parametrize("observation", [None, np.ones(4), np.ones((3, 9)), np.zeros(0)])
-def test_without_a_fitting_observation_the_weights_are_drawn(canvas: Canvas, observation: object) -> None:
-    view = NetworkView(BOX, FEATURE_NAMES, ACTION_NAMES)
-    view.set(network_of(), observation)
-    play(view, canvas, 3)
-    assert view.edges
-    assert not any(column.damaged.any() for column in view.columns)
+def test_without_a_fitting_observation_the_weights_are_drawn(canvas: Canvas) -> None:
+    for observation in (None, np.ones(4), np.ones((3, 9)), np.zeros(0)):
+        view = NetworkView(BOX, FEATURE_NAMES, ACTION_NAMES)
+        view.set(network_of(), observation)
+        play(view, canvas, 3)
+        assert view.edges
+        assert not any(column.damaged.any() for column in view.columns)
 
 
 def test_nothing_is_drawn_of_no_network(canvas: Canvas) -> None:

@@ -7,6 +7,7 @@ from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, PARAMS, Cause, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
+from game.core.clock import TimeScale
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.forecast import Forecast, coast_path
@@ -14,8 +15,7 @@ from game.flight.logbook import describe
 from game.flight.outcomes import outcome_card
 from game.flight.swarm import Swarm
 from game.scenes.logbook.scene import entry_row
-
-STANDING = PARAMS.pad_top + PARAMS.stand
+from tests.support.landers import STAND, put
 
 
 class Counting:
@@ -27,10 +27,6 @@ class Counting:
     def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
         self.asked += 1
         return np.full(len(observation), 3)
-
-
-def place(env: LanderEnv, *start: float) -> None:
-    env.place(np.ones(1, bool), np.array([start]))
 
 
 def test_a_network_decides_every_four_steps_and_at_once_when_it_takes_over():
@@ -72,31 +68,27 @@ def test_the_path_ahead_is_the_way_it_then_goes_in_the_wind_too():
             assert np.abs(place - flight.env.position[0]).max() < 0.03, mission
 
 
-def test_a_swarm_flies_again_and_again_and_counts():
-    swarm = Swarm(16, 4, ScriptedPilot())
-    ended = sum(int(swarm.step().sum()) for _ in range(1500))
-    assert ended == swarm.landed + swarm.lost > 16
-    assert swarm.landed > 12
-    assert len(swarm.poses.at(0.5)) == 16
-
-
-def test_a_swarm_is_drawn_without_a_leap_when_a_flight_begins_anew():
+def test_a_swarm_flies_again_and_again_counts_and_is_drawn_without_a_leap():
     swarm = Swarm(4, 4, ScriptedPilot())
+    ended = 0
     for _ in range(1500):
-        swarm.step()
+        ended += int(swarm.step().sum())
         assert np.abs(swarm.poses.now - swarm.poses.before)[:, :2].max() < 0.4
+    assert ended == swarm.landed + swarm.lost > 4
+    assert swarm.landed > 3
+    assert len(swarm.poses.at(0.5)) == 4
 
 
+TIPPED = "Tipped over to {2:.0f}°, and then came down at {0:.1f} m/s."
 HARD = "Touched down at {0:.1f} m/s; 2.0 is the limit."
 TILTED = "Tilted {2:.0f}° at contact; 29° is the limit."
-TIPPED = "Tipped over to {2:.0f}°, and then came down at {0:.1f} m/s."
 SLID = "Slid across the ground at {1:.1f} m/s; 2.0 is the limit."
 
 
 def fallen(*start: float, action: int = 0) -> Flight:
     """A flight from a state to its end."""
     flight = Flight(1)
-    place(flight.env, *start)
+    put(flight.env, start)
     while not flight.over:
         flight.step(action)
     return flight
@@ -107,12 +99,7 @@ def test_the_card_names_what_broke_the_craft_beside_the_pad_too(subtests: pytest
         (Cause.HARD, (0, 6, 0, -3, 0, 0), HARD, "HARD"),
         (Cause.TILTED, (0, 3.2, 0, -0.5, 0.6, 0), TILTED, "TILTED"),
         (Cause.SLIDING, (-2, 2.6, 3.5, -0.3, 0, 0), SLID, "SLIDING"),
-        (
-            Cause.HULL,
-            (0, 3.5, 0, -0.5, np.pi, 0),
-            "Tipped over to {2:.0f}°, and then came down at {0:.1f} m/s.",
-            "TILTED",
-        ),
+        (Cause.HULL, (0, 3.5, 0, -0.5, np.pi, 0), TIPPED, "TILTED"),
         # Beside the pad, nothing but speed and tilt break a craft; networks learn by the place alone.
         (Cause.TERRAIN, (10, 6, 0, -3, 0, 0), HARD, "HARD"),
         (Cause.TERRAIN, (10, 3.2, 0, -0.2, 0.6, 0), TILTED, "TILTED"),
@@ -128,15 +115,6 @@ def test_the_card_names_what_broke_the_craft_beside_the_pad_too(subtests: pytest
             assert card.advice == texts.ADVICE[advice]
 
 
-def test_a_craft_that_tipped_over_in_the_gust_reads_of_that_and_not_of_its_speed():
-    flight = fallen(0, 12, 1.0, -1.0, 1.2, 1.5, action=3)
-    card, (speed, _, tilt) = outcome_card(flight.env, 1.0), flight.env.impact[0]
-    assert flight.env.cause[0] != Cause.TILTED
-    assert speed > LIMITS.touch_speed
-    assert card.reason == texts.TIPPED_OVER.format(tilt=f"{np.degrees(tilt):.0f}", speed=f"{speed:.1f}")
-    assert card.advice == texts.ADVICE["TILTED"]
-
-
 def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():
     flight = fallen(10, 2.2, 0.3, -0.5, 0.2, 0)
     card, entry = outcome_card(flight.env, 1.0), describe(flight, 0.0)
@@ -148,7 +126,7 @@ def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():
 
 
 def test_the_card_of_a_landing_and_of_the_other_ends():
-    card = outcome_card(fallen(0.4, STANDING + 0.02, 0, 0, 0, 0).env, 0.81)
+    card = outcome_card(fallen(0.4, STAND + 0.02, 0, 0, 0, 0).env, 0.81)
     assert card.good
     assert card.title == "Perfect"
     assert ("OFF CENTRE", "0.4", "m") in card.figures
@@ -193,17 +171,6 @@ def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):
     assert networks.chosen(models, user, "gone").name == "modern"
 
 
-def test_only_the_network_that_is_asked_for_is_read_and_only_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    for name in ("one", "two", "three"):
-        DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(tmp_path / "models" / name)
-    read = []
-    load = DeepQAgent.load
-    monkeypatch.setattr(DeepQAgent, "load", lambda folder: (read.append(folder.name), load(folder))[1])
-    policies = networks.Policies(tmp_path / "shipped", tmp_path)
-    assert policies["two"].policy is policies["two"].policy is not None
-    assert read == ["two"]
-
-
 def test_whatever_lies_in_the_players_folder_is_named_and_never_raises(tmp_path: Path):
     folder = tmp_path / "models"
     DeepQAgent(4, 2).save(folder / "cartpole")
@@ -236,14 +203,11 @@ def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
     assert np.array_equal(watched.poses.now, alone.poses.now)
 
 
-@pytest.mark.parametrize("share", [0.6, 1.4])
-def test_a_forecast_is_flown_under_the_gravity_of_the_flight(share: float):
+def test_a_forecast_is_flown_under_the_gravity_of_the_flight():
     flight, forecast = Flight(7, ScriptedPilot()), Forecast(ScriptedPilot())
-    flight.set_gravity(share)
-    for _ in range(400):
+    flight.set_gravity(1.4)
+    while not len(forecast.path):
         forecast.follow(flight.env)
-        if len(forecast.path):
-            break
     flight.hand_over()
     for _ in range(10 * DECISION_STEPS):
         flight.step(0)
@@ -277,9 +241,45 @@ def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
     assert forecast._ahead.frame_skip == 7
 
 
-def test_what_a_network_says_of_its_rate_is_not_believed_without_a_look():
-    for said in (0, -3, "4", None, 2.5):
-        pilot = TrainedAtSeven()
-        pilot.run_settings = {"frame_skip": said}
-        assert networks.decision_steps(pilot) == networks.DECISION_STEPS, said
-    assert networks.decision_steps(None) == networks.DECISION_STEPS
+def test_at_its_own_pace_every_update_is_a_step():
+    pace = TimeScale()
+    assert all(pace.steps() == 1 for _ in range(100))
+    assert pace.between(0.4) == 0.4
+
+
+def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_over():
+    pace = TimeScale()
+    pace.slow_down()
+    steps = updates = 0
+    while pace.slow:
+        steps += pace.steps()
+        updates += 1
+    assert 45 <= updates <= 75
+    assert 0.3 < steps / updates < 0.65
+    pace.slow_down()
+    pace.steps()
+    pace.hurry()
+    assert not pace.slow
+    assert all(pace.steps() == 1 for _ in range(50))
+
+
+def test_a_picture_never_runs_backward():
+    """The moment that is drawn, in steps, grows from picture to picture."""
+    pace = TimeScale()
+    pace.slow_down()
+    steps, last = 1, 0.0  # it begins with a step, that of the crash
+    for update in range(120):
+        steps += pace.steps() if update else 0
+        for alpha in (0.0, 0.5, 0.99):
+            moment = steps - 1 + pace.between(alpha)
+            assert moment >= last - 1e-9
+            last = moment
+    assert last == pytest.approx(steps - 0.01)
+
+
+def test_the_players_own_pace_holds_for_as_long_as_it_is_wished():
+    pace = TimeScale(0.5)
+    assert sum(pace.steps() for _ in range(200)) == 100
+    pace.rate = 1.0
+    assert all(pace.steps() == 1 for _ in range(10))
+    assert pace.between(0.4) == 0.4

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.assets import ASSETS_DIR
 from game.flight import flight_file, sharing
@@ -84,35 +83,17 @@ def test_closed_standard_input_is_refused_in_a_sentence(capsys, monkeypatch):
     assert capsys.readouterr().out == f"-: refused, {texts.CODE_REFUSED['none']}\n"
 
 
-def test_an_end_elsewhere_than_claimed_is_said_to_be_wrong(tmp_path, capsys, record):
-    file = tmp_path / "one.json"
-    file.write_text(flight_file.to_text(replace(record, end=(9.0, 9.0, 0.0))))
-    assert main(["verify", str(file)]) == 1
-    assert "it ends elsewhere than it claims" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    "content", [b"", b"hello", b"\xff\xfe\x00", b"{", b'{"format": "tranquility flight"}', b"tranq-0"]
-)
-def test_what_is_no_flight_is_refused_in_a_sentence(tmp_path, capsys, content):
+def test_what_is_no_flight_is_refused_in_a_sentence(tmp_path, capsys):
     file = tmp_path / "strange.txt"
-    file.write_bytes(content)
-    assert main(["verify", str(file), str(tmp_path / "gone.txt")]) == 1
-    out, err = capsys.readouterr()
-    assert [": refused, " in line for line in out.splitlines()] == [True, True]
-    assert err.strip() == "0 true, 0 wrong, 2 refused"
+    for content in (b"", b"hello", b"\xff\xfe\x00", b"{", b'{"format": "tranquility flight"}', b"tranq-0"):
+        file.write_bytes(content)
+        assert main(["verify", str(file), str(tmp_path / "gone.txt")]) == 1
+        out, err = capsys.readouterr()
+        assert [": refused, " in line for line in out.splitlines()] == [True, True], content
+        assert err.strip() == "0 true, 0 wrong, 2 refused"
 
 
-def test_a_record_of_ours_comes_back_from_its_code(record):
-    flight = sharing.flight_in(f"look: {sharing.code(record)} !")
-    assert flight.recording == record.recording
-    back = sharing.record_of(flight, 5.0)
-    assert back.recording == record.recording
-    assert (back.entry.outcome, back.entry.score) == (Outcome.LANDED.name, record.entry.score)
-    assert back.end == pytest.approx(record.end, abs=1e-4)
-    assert flight_file.from_text(flight_file.to_text(back)) == back
-
-
+@pytest.mark.slow
 def test_no_window_is_needed():
     program = """
 import sys

@@ -8,11 +8,17 @@ from pathlib import Path
 import pygame
 import pytest
 
+from ai.flights.recording import STEPS
 from game.core import texts
+from game.core.settings import Settings
 from game.drawing.glyphs import SIGN
-from game.input.controls import Command
+from game.input.analogue import Stick
+from game.input.controls import Command, Controls
+from game.scenes.play.flight_controls import FINE, FlightControls
 from game.scenes.play.scene import PlayScene
+from game.ui.context import Context
 from tests.support.driver import Driver
+from tests.support.screens import save_settings
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15
 
@@ -56,7 +62,7 @@ def pads(game: Driver) -> Iterator[VirtualPads]:
 
 def test_a_pad_is_plugged_in_flown_with_and_pulled_out(game: Driver, pads: VirtualPads):
     controls = game.app.context.controls
-    for _ in range(3):
+    for _ in range(2):
         pads.plug_in()
         game.frames(2)
         gc.collect()  # a pad that nobody holds on to would fall silent here
@@ -68,32 +74,6 @@ def test_a_pad_is_plugged_in_flown_with_and_pulled_out(game: Driver, pads: Virtu
         pads.pull_out_all()
         assert game.frames(2)
         assert (controls.main, controls.steer) == (False, 0)
-
-
-def test_a_pad_leads_from_the_menu_to_settings_and_back(game: Driver, pads: VirtualPads):
-    pads.plug_in()
-    game.frames(2)
-
-    def tap(button: int) -> None:
-        for down in (True, False):
-            pads.press(button, down)
-            game.frames(2)
-
-    for _ in range(5):
-        tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    tap(pygame.CONTROLLER_BUTTON_A)
-    assert game.top_name == "SettingsScene"
-    tap(pygame.CONTROLLER_BUTTON_B)
-    assert game.top_name == "MenuScene"
-
-
-def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[..., Driver], pads: VirtualPads):
-    pads.plug_in()
-    again = open_game()
-    again.frames(2)
-    pads.press(pygame.CONTROLLER_BUTTON_A)
-    again.frames(2)
-    assert again.app.context.controls.main
 
 
 def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
@@ -136,12 +116,156 @@ def test_a_pad_pulled_out_before_its_turn_is_not_reported_by_the_name_of_another
     assert game.app.context.controls.pads == 1
 
 
-def test_a_pad_pulled_out_that_nobody_uses_disturbs_nobody(open_game: Callable[..., Driver], pads: VirtualPads):
+# Sticks and triggers as shares of thrust, from the events of a real pad as far as SDL can tell.
+
+TURN, RISE = pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_RIGHTY
+PULL, PULL_LEFT = pygame.CONTROLLER_AXIS_TRIGGERRIGHT, pygame.CONTROLLER_AXIS_TRIGGERLEFT
+
+
+@pytest.fixture
+def controls() -> Controls:
+    return Controls()
+
+
+def push(controls: Controls, axis: int, value: int, pad: int = 0) -> None:
+    controls.process(pygame.Event(pygame.CONTROLLERAXISMOTION, instance_id=pad, axis=axis, value=value))
+
+
+def stick(controls: Controls, **settings: bool) -> Stick:
+    return FlightControls(controls, Settings(**settings)).read(640.0)
+
+
+def test_a_pad_at_rest_asks_for_nothing(controls: Controls):
+    assert stick(controls) == Stick()
+    for axis, value in ((TURN, 4000), (RISE, -4000), (PULL, 900), (PULL, 0), (TURN, -4500)):
+        push(controls, axis, value)
+        assert stick(controls) == Stick(), (axis, value)
+
+
+@pytest.mark.parametrize("axis", [PULL, RISE])
+def test_a_throttle_gives_more_the_farther_it_goes_and_all_before_its_end(controls: Controls, axis: int):
+    way = -1 if axis == RISE else 1
+    thrusts = []
+    for value in range(0, 32768, 1024):
+        push(controls, axis, way * value)
+        action, shares = stick(controls)
+        thrusts.append(shares[0] if shares else STEPS * (action == 3))
+    assert thrusts == sorted(thrusts)
+    assert set(thrusts) == set(range(STEPS + 1))
+    assert thrusts[-2:] == [STEPS, STEPS]
+
+
+def test_the_stick_turns_to_both_sides_alike_and_finely_near_its_rest(controls: Controls):
+    for value in (8000, 16000, 24000, 32000):
+        sides = []
+        for way in (-1, 1):
+            push(controls, TURN, way * value)
+            action, shares = stick(controls)
+            assert action == (1 if way < 0 else 2)
+            sides.append(shares[1] if shares else way * STEPS)
+        assert sides[0] == -sides[1]
+    push(controls, TURN, 16000)
+    _, shares = stick(controls)
+    assert shares
+    assert shares[1] < STEPS / 3  # the curve: half of the way is less than a third
+
+
+def test_a_hand_that_trembles_does_not_move_the_throttle_but_both_ends_are_reached(controls: Controls):
+    reader = FlightControls(controls, Settings())
+
+    def at(value: int) -> Stick:
+        push(controls, PULL, value)
+        return reader.read(640.0)
+
+    rest = at(16384)
+    assert rest.shares == (8, 0)
+    assert at(16384 + 1100) == at(16384 - 1100) == rest  # a little more than half of a step
+    assert at(16384 + 2200).shares == (9, 0)
+    assert at(32767) == Stick(3)
+    assert at(0) == Stick()
+
+
+def test_a_trigger_that_rests_below_zero_is_learnt_from_its_first_value(controls: Controls):
+    push(controls, PULL, -32767)
+    assert stick(controls) == Stick()
+    push(controls, PULL, 0)  # half of its way
+    assert stick(controls).shares == (8, 0)
+    push(controls, PULL, 32767)
+    assert stick(controls) == Stick(3)
+    push(controls, PULL, -32000)
+    assert stick(controls) == Stick()
+    push(controls, PULL, 16384, pad=1)  # another pad, whose trigger rests at 0
+    assert stick(controls).shares == (8, 0)
+
+
+def test_without_analogue_it_is_all_or_nothing(controls: Controls):
+    push(controls, PULL, 12000)
+    push(controls, TURN, -12000)
+    assert stick(controls).shares is not None
+    assert stick(controls, analogue=False) == Stick(4)
+
+
+def test_fine_turning_takes_a_part_of_the_jets_and_nothing_of_the_engine(controls: Controls):
+    for key in (pygame.K_LEFT, pygame.K_UP):
+        controls.process(pygame.Event(pygame.KEYDOWN, key=key, mod=0))
+    assert stick(controls) == Stick(4)
+    controls.process(pygame.Event(pygame.KEYDOWN, key=pygame.K_LSHIFT, mod=0))
+    assert stick(controls) == Stick(3, (STEPS, -round(FINE * STEPS)))
+    controls.process(pygame.Event(pygame.KEYUP, key=pygame.K_LSHIFT, mod=0))
+    push(controls, PULL_LEFT, 30000)  # the same with a pad
+    assert stick(controls).shares == (STEPS, -round(FINE * STEPS))
+
+
+def test_the_mouse_turns_finely_while_its_middle_button_is_held(controls: Controls):
+    hands = FlightControls(controls, Settings())
+    for button in (3, 2):
+        hands.take(pygame.Event(pygame.MOUSEBUTTONDOWN, pos=(900, 300), button=button))
+    assert hands.read(640.0) == Stick(2, (0, round(FINE * STEPS)))
+    hands.take(pygame.Event(pygame.MOUSEBUTTONUP, pos=(900, 300), button=2))
+    assert hands.read(640.0) == Stick(2)
+
+
+@pytest.mark.parametrize("device", ["trigger", "mouse"])
+def test_a_press_switches_the_engine_on_and_the_next_one_off(controls: Controls, device: str):
+    hands = FlightControls(controls, Settings(toggle_thrust=True))
+
+    def press(down: bool) -> None:
+        if device == "trigger":
+            push(controls, PULL, 30000 * down)
+        else:
+            kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
+            hands.take(pygame.Event(kind, pos=(640, 300), button=1))
+
+    burns = []
+    for down in (True, True, False, False, True, False):
+        press(down)
+        burns.append(hands.read(640.0).action == 3)
+    assert burns == [True, True, True, True, False, False]
+    press(True)
+    hands.read(640.0)
+    hands.begin()  # another flight
+    assert hands.read(640.0) == Stick()
+
+
+def test_a_real_pad_flies_with_shares_that_the_flame_follows_and_is_pulled_out(
+    open_game: Callable[..., Driver], context: Context, pads: VirtualPads
+):
+    save_settings(context)
     game = open_game(PlayScene, 3)
+    play = game.top
     pads.plug_in()
     game.frames(3)
-    game.key(pygame.K_UP)
-    game.frames(5)
+    pads.push(TURN, 20000)
+    pads.push(RISE, -20000)
+    game.frames(40)
+    main, side = play.flight.recording.shares[len(play.flight.recording.actions) - 1]
+    assert 0 < main < STEPS
+    assert 0 < side < STEPS
+    thrust = play.flown.scenery.stage.thrust[0]
+    assert thrust[:2].tolist() == pytest.approx([main / STEPS, side / STEPS], abs=0.01)
     pads.pull_out_all()
+    game.frames(3)
+    assert "PauseScene" in game.top_name
+    game.key(pygame.K_ESCAPE)
     game.frames(5)
-    assert game.top_name == "PlayScene"
+    assert play.waiting  # it hangs until it is touched

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
@@ -14,13 +15,15 @@ from ai.nn import SGD, Adam
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import save
+from ai.training.small_run import Flown as Flight
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.core.source import source_of
+from game.drawing.canvas import Canvas
 from game.explain.figures import decimal, percent, points
 from game.flight.logbook import Records
-from game.scenes.learn import downhill, plane
+from game.scenes.learn import downhill, moment, pictures, plane
 from game.scenes.learn import runs as runs_module
 from game.scenes.learn.backwards import BackwardsChapter
 from game.scenes.learn.chapter import Chapter
@@ -127,7 +130,7 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
 
 def test_more_units_divide_more_of_the_plane(subtests: pytest.Subtests):
     for units, least, most in ((0, 0.5, 0.82), (2, 0.6, 0.94), (4, 0.88, 1.0), (8, 0.98, 1.0)):
-        for seed in range(3):
+        for seed in range(2):
             with subtests.test(units=units, seed=seed):
                 points_, targets = plane.examples(0)
                 network, optimizer = plane.network_of(units, seed), Adam(0.02)
@@ -398,31 +401,30 @@ def run(chapter: Any, choice: int) -> None:
     assert [states[0].decisions for states in chapter.states] == list(range(chapter.LENGTH + 1))
 
 
+@pytest.mark.parametrize(("kind", "asked", "other"), [(TargetChapter, 0, 2), (DaringChapter, 1, 2)])
 def test_two_agents_learn_and_a_guess_gets_its_verdict_from_this_very_run(
-    made: Made, monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
+    made: Made, monkeypatch: pytest.MonkeyPatch, kind: Any, asked: int, other: int
 ):
-    for kind, asked, other in ((TargetChapter, 0, 2), (DaringChapter, 1, 2)):
-        with subtests.test(kind.__name__):
-            monkeypatch.setattr(kind, "LENGTH", 150)
-            chapter = made(kind)
-            chapter.update()
-            assert not chapter.states
-            run(chapter, other)
-            assert chapter.verdict() is None, "the question was about another choice"
-            run(chapter, asked)
-            came = chapter.verdict()
-            assert came is not None
-            assert came < len(texts.LEARN_ANSWERS[chapter.key])
-            left, right = (state.landed or 0.0 for state in chapter.states[-1])
-            assert {percent(left), percent(right)} <= set(_percents(chapter.why()))
-            if kind is TargetChapter:
-                assert chapter.peaks[1] > 300.0, "it does on most processors"
-                assert chapter.verdict() == 2
-            else:
-                expected = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
-                assert chapter.verdict() == expected
-            chapter.restart()
-            assert (chapter.states, chapter.tried) == ([], False)
+    monkeypatch.setattr(kind, "LENGTH", 40)
+    chapter = made(kind)
+    chapter.update()
+    assert not chapter.states
+    run(chapter, other)
+    assert chapter.verdict() is None, "the question was about another choice"
+    run(chapter, asked)
+    assert chapter.verdict() in range(len(texts.LEARN_ANSWERS[chapter.key]))
+    left, right = (state.landed or 0.0 for state in chapter.states[-1])
+    assert {percent(left), percent(right)} <= set(_percents(chapter.why()))
+    if kind is TargetChapter:
+        assert (chapter.verdict() == 2) is (chapter.peaks[1] > 300.0)
+        monkeypatch.setattr(TargetChapter, "peaks", (0.0, 400.0))
+        run(chapter, asked)
+        assert chapter.verdict() == 2
+    else:
+        came = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
+        assert chapter.verdict() == came
+    chapter.restart()
+    assert (chapter.states, chapter.tried) == ([], False)
 
 
 def _percents(sentence: str) -> list[str]:
@@ -431,9 +433,9 @@ def _percents(sentence: str) -> list[str]:
 
 
 def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(MemoryChapter, "LENGTH", 60)
-    monkeypatch.setattr("game.scenes.learn.memory.YESTERDAY", 30)
-    monkeypatch.setattr(MemoryChapter, "PLAN", MemoryChapter.PLAN._replace(change=30))
+    monkeypatch.setattr(MemoryChapter, "LENGTH", 40)
+    monkeypatch.setattr("game.scenes.learn.memory.YESTERDAY", 20)
+    monkeypatch.setattr(MemoryChapter, "PLAN", MemoryChapter.PLAN._replace(change=20))
     chapter = made(MemoryChapter)
     for number in range(len(KINDS)):
         run(chapter, number)
@@ -475,3 +477,31 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     assert done() == {"train", "choose", "hand"}, "opened, and not flown yet"
     records.keep(landed(), time.time() + 5, network="mine")
     assert done() == {"train", "choose", "hand", "race"}
+
+
+# Pictures
+
+
+def test_no_lander_is_cut_at_the_upper_edge(made: Made, monkeypatch: pytest.MonkeyPatch):
+    drawn: list[np.ndarray] = []
+    monkeypatch.setattr(pictures, "draw_crowd", lambda _, __, poses, ___: drawn.append(poses))
+    canvas, box = Canvas(pygame.Surface((1280, 720))), pygame.FRect(400, 100, 500, 120)
+    heights = np.arange(0.0, 30.0, 0.5)
+    flown = Flight(heights, np.zeros(60), np.zeros(60, bool), np.zeros(60, np.intp))
+    runs_module.draw_row(canvas, box, flown, 0, count=60)
+    poses = np.stack([np.zeros(60), heights, np.zeros(60)], axis=1)
+    view = pictures.view_in(box, (0.0, 5.0), 40.0, canvas.scale)
+    pictures.draw_landers(canvas, box, view, poses, np.zeros(60, bool), 0)
+    assert len(drawn[0]) > 20
+    assert 10 < len(drawn[1]) < 60
+    assert view.points([(0.0, drawn[1][:, 1].max() + pictures.HEAD)])[0, 1] >= box.top
+    for kind in (MomentChapter, ChoiceChapter):
+        chapter = made(kind)
+        for _ in MOMENTS:
+            with monkeypatch.context() as patch:
+                views: list[Any] = []
+                patch.setattr(moment, "draw_ground", lambda _, __, seen, views=views: views.append(seen))
+                chapter.draw(canvas, box, 1.0)
+            ((_, y),) = views[0].points([chapter.env.position[0]])
+            assert y - 1.3 * np.ptp(views[0].points([(0.0, 0.0), (0.0, 1.0)])[:, 1]) >= box.top
+            chapter.turn()

@@ -10,9 +10,8 @@ from game.core import texts
 from game.core.settings import Settings
 from game.scenes.learn import scene as chapter_scene
 from game.scenes.learn.list import LearnScene
-from game.scenes.learn.path import PAGES, PATH, Progress, following
+from game.scenes.learn.path import PATH, Progress, following
 from game.scenes.learn.scene import CODE, PREDICT, TRY, WHY, ChapterScene
-from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.screens import save_settings
@@ -28,15 +27,6 @@ def written(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> str:
         words = words_written(patch)
         driver.frames(2)
     return " ".join(words)
-
-
-def test_learn_is_a_word_of_the_menu_and_leads_to_physics(open_game: Open):
-    driver = open_game(MenuScene)
-    driver.press_on(texts.MENU["learn"][0])
-    driver.frames(40)
-    assert driver.top_name == "LearnScene"
-    driver.press_on(texts.LEARN_PHYSICS)
-    assert driver.top_name == "PhysicsScene"
 
 
 def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Open, context: Context):
@@ -59,29 +49,41 @@ def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Op
     assert driver.top.page == TRY
 
 
-def test_each_chapter_is_gone_through(open_game: Open, context: Context, subtests: pytest.Subtests):
+@pytest.mark.parametrize("key", KEYS)
+def test_a_chapter_is_gone_through_in_two_languages_and_leads_on(
+    open_game: Open, context: Context, key: str, monkeypatch
+):
     save_settings(context)
-    for key in KEYS:
-        with subtests.test(key):
-            driver = open_game(ChapterScene, key)
-            scene = driver.top
-            for label in (texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], texts.LEARN_ON[WHY]):
-                driver.frames(2)
-                driver.click(driver.widget(label).box.center)
-            assert scene.page == CODE
-            assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
-            assert (texts.LEARN_NEXT_CHAPTER in driver.hints()) == (following(key) is not None)
-            driver.key(pygame.K_b)
-            driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-            assert scene.page == CODE
-            driver.press_on(scene.chapter.words["door"])
-            driver.frames(30)
-            assert driver.top_name not in ("ChapterScene", "ErrorScene")
-            driver = open_game(ChapterScene, key)
-            driver.top.turn_to(CODE)
-            driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
-            driver.frames(20)
-            assert driver.top.key == (following(key) or key)
+    driver = open_game(ChapterScene, key)
+    scene = driver.top
+    begin = {"neuron": "hint", "moment": "go"}
+    for page, label in enumerate((texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], texts.LEARN_ON[WHY], "")):
+        assert scene.page == page
+        if page == TRY and key in begin:
+            getattr(scene.chapter, begin[key])()
+            driver.skip(20)
+        said = written(driver, monkeypatch)
+        assert page > TRY or not scene.panel.overflows
+        assert not re.findall(r"(?<![\w.])-\d", said), "a hyphen stands for a minus"
+        if page in (PREDICT, CODE):
+            question = texts.LEARN[key]["question"]
+            with driver.speaking("de"):
+                assert question not in written(driver, monkeypatch)
+        if label:
+            driver.click(driver.widget(label).box.center)
+    assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
+    assert (texts.LEARN_NEXT_CHAPTER in driver.hints()) == (following(key) is not None)
+    driver.key(pygame.K_b)
+    driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    assert scene.page == CODE
+    driver.press_on(scene.chapter.words["door"])
+    driver.frames(2)
+    assert driver.top_name not in ("ChapterScene", "ErrorScene")
+    driver = open_game(ChapterScene, key)
+    driver.top.turn_to(CODE)
+    driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
+    driver.frames(2)
+    assert driver.top.key == (following(key) or key)
 
 
 def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, context: Context, monkeypatch):
@@ -160,35 +162,6 @@ def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_said(open_game:
         assert not scene.chapter.running or end, "leaving a chapter ends its run"
 
 
-def test_no_hyphen_stands_for_a_minus_and_another_language_changes_all_words_at_once(
-    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
-):
-    save_settings(context)
-    begin = {"neuron": "hint", "moment": "go"}
-    for key in KEYS:
-        with subtests.test(key):
-            driver = open_game(ChapterScene, key)
-            scene = driver.top
-            scene.turn_to(TRY)
-            if key in begin:
-                getattr(scene.chapter, begin[key])()
-            driver.skip(20)
-            for page in range(len(PAGES)):
-                scene.turn_to(page)
-                said = written(driver, monkeypatch)
-                assert page > TRY or not scene.panel.overflows
-                assert not re.findall(r"(?<![\w.])-\d", said)
-                try:
-                    texts.choose("de")
-                    driver.frames(1)
-                    scene.reword()
-                    german = written(driver, monkeypatch)
-                finally:
-                    texts.choose("en")
-                    scene.reword()
-                assert texts.LEARN[key]["question"] not in german
-
-
 def test_a_chapter_of_steps_is_done_when_all_of_them_are(open_game: Open, context: Context):
     save_settings(context, learnt={"own": {"done": True}})
     driver = open_game(ChapterScene, "own")
@@ -216,17 +189,17 @@ def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game:
     assert isinstance(driver.top, ChapterScene)
     driver.key(pygame.K_RETURN)
     assert progress.guess("neuron") == 0
-    beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
-    assert (beyond.guess("neuron"), beyond.answer("neuron")) == (None, ""), "it has three answers"
-    for learnt in ([], 7, "x"):
-        assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
-
-
-def test_progress_of_before_still_counts():
-    saved = {"neuron": {"guess": 1, "page": 3, "done": True}, "moment": {"page": 2}}
-    progress = Progress(Settings.from_dict({"learnt": saved}))
+    before = {"neuron": {"guess": 1, "page": 3, "done": True}, "moment": {"page": 2}}  # as it was noted once
+    progress = Progress(Settings.from_dict({"learnt": before}))
     assert [progress.state(key) for key in ("neuron", "moment", "own")] == [2, 1, 0]
     assert progress.guess("neuron") == 1
+    beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
+    assert (beyond.guess("neuron"), beyond.answer("neuron")) == (None, ""), "it has three answers"
+    for why, came in ((3, 9), (None, -1), ([], "2")):
+        kept = Progress(Settings(learnt={"neuron": {"why": why, "language": "en", "came": came}}))
+        assert kept.shown("neuron") == ("", None)
+    for learnt in ([], 7, "x"):
+        assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
 
 
 def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(

@@ -16,11 +16,10 @@ from game.core import texts
 from game.explain.figures import number, percent, points
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.flight import in_units, sensed
-from game.scenes.lesson.frame import case_of, pulled
+from game.scenes.lesson.frame import case_of
 from game.scenes.lesson.frames import parts_of
 from game.scenes.lesson.network import GradientFrame, NetworkFrame
 from game.scenes.lesson.scene import LessonScene
-from game.scenes.lesson.step import Pulls
 from game.scenes.lesson.update import AfterFrame, ErrorFrame
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of, shown
@@ -35,11 +34,20 @@ def lesson(request: pytest.FixtureRequest) -> Lesson:
     return lesson_of(request.param)
 
 
+def opened(open_game: Open, lesson: Lesson) -> Driver:
+    driver = open_game(LessonScene, lesson)
+    driver.frames(3)
+    return driver
+
+
 @pytest.fixture
 def driver(open_game: Open, lesson: Lesson) -> Driver:
-    opened = open_game(LessonScene, lesson)
-    opened.frames(3)
-    return opened
+    return opened(open_game, lesson)
+
+
+@pytest.fixture
+def modern(open_game: Open) -> Driver:
+    return opened(open_game, lesson_of("modern"))
 
 
 def explained(driver: Driver) -> dict[str, str]:
@@ -66,32 +74,26 @@ def test_figures_have_no_minus_before_a_zero_and_percent_has_its_space():
 # The ways through it
 
 
-def test_all_frames_by_keys_by_mouse_and_by_gamepad(driver: Driver):
-    scene = driver.top
+def test_all_frames_by_keys_by_mouse_and_by_gamepad(modern: Driver):
+    scene = modern.top
     for place, name in enumerate(NAMES):
         assert scene.current == place
         assert scene.frame.name == texts.LESSON_FRAMES[name][0]
-        driver.key(pygame.K_RIGHT)
-    driver.keys(*[pygame.K_LEFT] * 9)
+        assert not scene.panel.overflows, name
+        assert texts.LESSON_TITLE not in explained(modern), "the strip of cards is not covered"
+        modern.key(pygame.K_RIGHT)
+    modern.keys(*[pygame.K_LEFT] * 9)
     assert scene.current == ALONE
-    driver.click(scene.cards._boxes[AFTER].center)
+    modern.click(scene.cards._boxes[AFTER].center)
     assert scene.current == AFTER
-    driver.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+    modern.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
     assert scene.current == AFTER - 1
-
-
-def test_cards_stand_in_two_lines_of_a_narrow_window_and_take_clicks_while_numbers_are_explained(
-    driver: Driver,
-):
-    driver.resize((800, 600))
-    driver.key(pygame.K_F1)
-    assert driver.top.explained.stepping
-    driver.frames(2)
-    boxes = driver.top.cards._boxes
-    assert boxes[-1].top > boxes[0].bottom
-    for place in (ERROR, TARGET):
-        driver.click(driver.top.cards._boxes[place].center)
-        assert driver.top.current == place
+    modern.resize((800, 600))  # in which cards stand in two lines
+    modern.key(pygame.K_F1)
+    modern.frames(2)
+    assert scene.cards._boxes[-1].top > scene.cards._boxes[0].bottom
+    modern.click(scene.cards._boxes[TARGET].center)
+    assert scene.current == TARGET, "while numbers are explained"
 
 
 def test_the_code_is_folded_until_asked_for_and_lit_where_the_frame_is_made(driver: Driver, lesson: Lesson):
@@ -120,8 +122,8 @@ def test_the_code_is_folded_until_asked_for_and_lit_where_the_frame_is_made(driv
     assert driver.top.code.index == before - 1
 
 
-def test_every_line_stands_in_the_source_and_its_numbers_are_listed(driver: Driver, lesson: Lesson):
-    lines = [(part.code, line) for part in driver.top.parts for line in part.code.lines]
+def test_every_line_stands_in_the_source_and_its_numbers_are_listed(lesson: Lesson):
+    lines = [(part.code, line) for part in parts_of(lesson) for line in part.code.lines]
     assert len(lines) > 100
     for code, line in lines:
         code.index = code.lines.index(line)
@@ -156,46 +158,29 @@ def test_it_opens_on_this_memory_alone_which_walks_to_its_target_press_by_press(
     assert len(frame.alone.way) == 1
 
 
-def test_why_it_moves_far_alone_and_little_in_the_run_is_said_on_both_frames(driver: Driver, lesson: Lesson):
-    frame, count = driver.top.frame, len(lesson.batch_errors)
-    step, action = frame._step, int(lesson.cell.action)
-    moved = float(lesson.predicted_after[action] - lesson.predicted[action])
-    own = pulled(Pulls.of(step, lesson.derivative, moved).own / lesson.config.reward_scale)
-    assert texts.LESSON_ALONE_MORE.format(count=count, own=own) in " ".join(shown(driver, ALONE))
-    frame.once()
-    alone, run = abs(frame.alone.way[1] - frame.alone.way[0]), abs(float(own.replace("−", "-"))) * step.scale
-    assert alone > 10 * run, "the steps are large there"
-    words = " ".join(shown(driver, AFTER))
-    assert texts.LESSON_PULL_PARTS[0][0].format(count=count) in words
-    assert own in words
-    assert own != "+0.00"
-
-
-def test_another_language_changes_all_words_at_once(driver: Driver):
-    driver.press_on(texts.LESSON_ALONE_ONCE)
-    english = driver.top.frame.sentence
-    try:
-        texts.choose("de")
-        driver.top.reword()
-        assert [part.frame.name for part in driver.top.parts] == [texts.LESSON_FRAMES[name][0] for name in NAMES]
-        assert driver.top.frame.sentence != english
-        assert len(driver.top.frame.alone.way) == 2, "what was tried stays"
-    finally:
-        texts.choose("en")
-
-
-def test_each_frame_is_seen_whole_and_the_strip_of_cards_is_not_covered(driver: Driver):
-    for place, name in enumerate(NAMES):
-        driver.top.show(place)
-        driver.frames(2)
-        assert not driver.top.panel.overflows, name
-        assert texts.LESSON_TITLE not in explained(driver)
+def test_another_language_changes_all_words_at_once(modern: Driver):
+    modern.press_on(texts.LESSON_ALONE_ONCE)
+    english = modern.top.frame.sentence
+    with modern.speaking("de"):
+        assert [part.frame.name for part in modern.top.parts] == [texts.LESSON_FRAMES[name][0] for name in NAMES]
+        assert modern.top.frame.sentence != english
+        assert len(modern.top.frame.alone.way) == 2, "what was tried stays"
 
 
 # The numbers of each frame
 
 
-def test_the_moment_and_the_values_are_those_that_were_given_and_answered(driver: Driver, lesson: Lesson):
+def test_the_numbers_of_each_frame_are_those_of_the_learning_step(
+    driver: Driver, lesson: Lesson, subtests: pytest.Subtests
+):
+    for check in (moment_and_values_are_those_given_and_answered, what_happened_shows_each_decisions_pay,
+                  the_target_is_a_sum_that_says_who_judges, the_curve_is_the_costs_own, pulls_add_up_to_the_step,
+                  a_units_sum_adds_up_to_its_value):  # fmt: skip
+        with subtests.test(check.__name__):
+            check(driver, lesson)
+
+
+def moment_and_values_are_those_given_and_answered(driver: Driver, lesson: Lesson):
     words = shown(driver, MOMENT)
     for feature, value in enumerate(in_units(lesson.cell.state).tolist()):
         assert {texts.INPUTS[feature], sensed(value, feature), number(float(lesson.state[feature]))} <= set(words)
@@ -204,7 +189,7 @@ def test_the_moment_and_the_values_are_those_that_were_given_and_answered(driver
         assert f"{value:.2f}".replace("-", "−") in words
 
 
-def test_what_happened_shows_the_parts_of_each_decisions_pay_and_the_state_after(driver: Driver, lesson: Lesson):
+def what_happened_shows_each_decisions_pay(driver: Driver, lesson: Lesson):
     words, flown = shown(driver, HAPPENED), lesson.flown
     assert flown is not None
     assert points(float(lesson.cell.reward) / lesson.config.reward_scale) in words
@@ -224,7 +209,7 @@ def test_what_happened_shows_the_parts_of_each_decisions_pay_and_the_state_after
         }
 
 
-def test_the_target_is_a_sum_that_can_be_read_and_says_who_judges(driver: Driver, lesson: Lesson):
+def the_target_is_a_sum_that_says_who_judges(driver: Driver, lesson: Lesson):
     words, scale, config = shown(driver, TARGET), lesson.config.reward_scale, lesson.config
     for value in (lesson.target, float(lesson.cell.reward), lesson.next_value):
         assert points(value / scale) in words
@@ -249,7 +234,7 @@ def test_a_target_at_the_end_of_a_flight_says_that_nothing_comes_after(open_game
     assert set(texts.LESSON_OUTCOMES) & set(shown(driver, HAPPENED))
 
 
-def test_the_curve_is_the_costs_own_and_what_goes_back_is_its_slope(driver: Driver, lesson: Lesson):
+def the_curve_is_the_costs_own(driver: Driver, lesson: Lesson):
     words, frame, cost = shown(driver, ERROR), driver.top.frame, COSTS[lesson.config.cost]()
     assert isinstance(frame, ErrorFrame)
     for error in (-2.5, -0.1, 0.0, 0.4, 3.0):
@@ -306,7 +291,7 @@ def links_of(frame: GradientFrame) -> list[Link]:
     return links(network)
 
 
-def test_after_the_step_the_value_and_its_pulls_are_shown(driver: Driver, lesson: Lesson):
+def pulls_add_up_to_the_step(driver: Driver, lesson: Lesson):
     words, scale = " ".join(shown(driver, AFTER)), lesson.config.reward_scale
     frame, action = driver.top.frame, int(lesson.cell.action)
     assert isinstance(frame, AfterFrame)
@@ -322,7 +307,7 @@ def test_after_the_step_the_value_and_its_pulls_are_shown(driver: Driver, lesson
         assert pulls.earlier == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
+def a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
     frame = driver.top.parts[VALUES].frame
     assert isinstance(frame, NetworkFrame)
     assert_sums_add_up(frame)

@@ -1,6 +1,5 @@
 """Laws against what the engine does: over the whole range of every quantity, and as it is said on the panel."""
 
-import math
 from collections.abc import Callable
 from itertools import count, product
 from typing import Any
@@ -10,11 +9,10 @@ import pytest
 
 from engine import Body
 from game.core import texts
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results
 from game.scenes.physics.scene import GRAVITIES
-from game.world.grip import Grip
 
 MOON, EARTH = GRAVITIES
 # The body that is measured, where it is not the first
@@ -47,36 +45,32 @@ def whole_range(
     return found
 
 
-@pytest.mark.parametrize("gravity", GRAVITIES)
-@pytest.mark.parametrize(("name", "quantity"), QUANTITIES)
-def test_the_law_holds_over_the_whole_range(name: str, quantity: str, gravity: float):
-    fewer = {"count": 30.0} if quantity == "rubbing" else {}  # a hundred bodies take long
-    points = 2 if name == "heap" else 3
-    found = whole_range(name, quantity, gravity, points, **fewer)
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [pytest.param(*each, marks=[pytest.mark.slow] * (each == ("heap", "count"))) for each in QUANTITIES],
+)
+def test_the_law_holds_over_the_whole_range(name: str, quantity: str):
+    if name == "heap":  # whose hundred bodies take long
+        found = whole_range(name, quantity, MOON, 2, **({"count": 10.0} if quantity == "rubbing" else {}))
+    else:
+        found = whole_range(name, quantity, MOON, 3)
     top = max(law for _, law, _ in found)
     for value, law, result in found:
         assert result == pytest.approx(law, abs=EXHIBITS[name].tolerance * top), f"{quantity} = {value}"
 
 
-def test_extremes_of_all_quantities_together_obey_the_law_too(subtests: pytest.Subtests):
-    for name in EXHIBITS:
-        with subtests.test(name=name):
-            kind = EXHIBITS[name]
-            names = [each.name for each in kind.quantities]
-            corners = [dict(zip(names, ends, strict=True)) for ends in product(*(q.limits for q in kind.quantities))]
-            top = max(kind.law(EARTH, values) for values in corners)
-            for values in corners:
-                if values.get("count") == 100.0:
-                    continue  # a hundred bodies are tested above
-                exhibit = kind(EARTH, values)
-                law = kind.law(EARTH, exhibit.values)
-                assert measured(exhibit) == pytest.approx(law, abs=kind.tolerance * top), values
-
-
-def test_a_slope_holds_where_its_tangent_is_below_the_friction():
-    for degrees in (10.0, 26.0, 27.0):
-        slope = EXHIBITS["slopes"](EARTH, {"degrees": degrees})
-        assert (measured(slope) > 0.01) is (math.tan(math.radians(degrees)) > 0.5)
+@pytest.mark.parametrize("name", EXHIBITS)
+def test_extremes_of_all_quantities_together_obey_the_law_too(name: str):
+    kind = EXHIBITS[name]
+    names = [each.name for each in kind.quantities]
+    corners = [dict(zip(names, ends, strict=True)) for ends in product(*(q.limits for q in kind.quantities))]
+    top = max(kind.law(EARTH, values) for values in corners)
+    for values in corners:
+        if values.get("count") == 100.0:
+            continue  # a hundred bodies are tested above, in the slow test
+        exhibit = kind(EARTH, values)
+        law = kind.law(EARTH, exhibit.values)
+        assert measured(exhibit) == pytest.approx(law, abs=kind.tolerance * top), values
 
 
 def test_a_run_that_a_hand_has_come_into_measures_nothing(subtests: pytest.Subtests):
@@ -85,12 +79,14 @@ def test_a_run_that_a_hand_has_come_into_measures_nothing(subtests: pytest.Subte
             exhibit = EXHIBITS[name](EARTH, {"count": 10.0} if name == "heap" else {})
             body = FOLLOWED.get(name, lambda exhibit: exhibit.bodies[0])(exhibit)
             grip = Grip(body, body.position[0].copy())
-            for _ in range(min(exhibit.patience, 500)):
+            for _ in range(exhibit.patience):
                 exhibit.step(grip)
             assert exhibit.result is None
 
 
-def test_values_spread_over_the_range_can_be_chosen(subtests: pytest.Subtests):
+def test_every_quantity_has_words_and_values_spread_over_its_range_that_can_be_chosen(subtests: pytest.Subtests):
+    assert texts.LAWS.keys() == texts.EXHIBITS.keys() == EXHIBITS.keys()
+    assert texts.QUANTITIES.keys() == {quantity for _, quantity in QUANTITIES}
     for name, quantity in QUANTITIES:
         with subtests.test(name=name, quantity=quantity):
             [chosen] = [each for each in EXHIBITS[name].quantities if each.name == quantity]
@@ -100,11 +96,6 @@ def test_values_spread_over_the_range_can_be_chosen(subtests: pytest.Subtests):
             steps = (np.array([*values, chosen.start]) - chosen.limits[0]) / chosen.step
             assert steps == pytest.approx(np.rint(steps), abs=1e-6)
             assert len(set(values)) == len(values)
-
-
-def test_every_exhibit_has_words_for_its_law_and_its_quantities():
-    assert texts.LAWS.keys() == texts.EXHIBITS.keys() == EXHIBITS.keys()
-    assert texts.QUANTITIES.keys() == {quantity for _, quantity in QUANTITIES}
 
 
 # The plot
@@ -150,7 +141,7 @@ def test_the_panel_shows_law_measurement_and_their_difference():
     results, exhibit = Results(), EXHIBITS["bounce"](EARTH)
     panel = LawPlot(exhibit, "drop", results)
     [(waiting, _)] = panel.sentences("")
-    assert waiting.startswith("Law 3.38 m. It is measured")
+    assert waiting.startswith("Law 3.38 m. Measured")
     result = measured(exhibit)
     results.add(exhibit)
     panel.refresh()
@@ -176,19 +167,11 @@ def test_a_column_needs_some_iterations_to_carry_its_load_and_more_change_nothin
         return abs(measured(stack) / stack.law(EARTH, stack.values) - 1)
 
     assert difference(1.0) > 0.03
-    assert all(difference(iterations) < 1e-3 for iterations in (6.0, 10.0, 20.0))
-
-
-def test_a_bounce_is_met_a_part_of_a_step_early_or_late():
-    for gravity in GRAVITIES:
-        for _, law, result in whole_range("bounce", "drop", gravity, 5):
-            fastest = math.sqrt(2 * gravity * 6.5)
-            assert abs(result - law) < fastest / 60  # what a ball falls in one step
+    assert all(difference(iterations) < 1e-3 for iterations in (6.0, 20.0))
 
 
 def test_what_a_heap_still_carries_explains_all_of_the_difference():
-    heap = EXHIBITS["heap"](MOON, {"count": 30.0})
+    heap = EXHIBITS["heap"](MOON, {"count": 20.0})
     result = measured(heap)
     momentum = sum(body.mass * float(body.velocity[0, 1]) for body in heap.bodies)
-    seconds = heap.patience / 60
-    assert result == pytest.approx(heap.law(MOON, heap.values) + momentum / seconds, rel=2e-3)
+    assert result == pytest.approx(heap.law(MOON, heap.values) + momentum * 60 / heap.patience, rel=2e-3)

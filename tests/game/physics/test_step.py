@@ -9,10 +9,9 @@ import pytest
 from engine import World
 from engine.contacts import MARGIN
 from game.core.source import source_of
-from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibit import Exhibit, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.step import StepRecord
-from game.world.grip import Grip
 
 EARTH = 9.81
 # Exhibits and steps at which much happens: rest, fall, sliding, rebound, impacts, flight, a push.
@@ -21,7 +20,7 @@ MOMENTS = {"stack": 40, "heap": 95, "slopes": 20, "bounce": 66, "impacts": 113, 
 
 @cache
 def moment(name: str) -> tuple[Exhibit, StepRecord]:
-    exhibit = EXHIBITS[name](EARTH, {"count": 40.0} if name == "heap" else {})
+    exhibit = EXHIBITS[name](EARTH, {"count": 20.0} if name == "heap" else {})
     for _ in range(MOMENTS[name]):
         exhibit.step()
     return exhibit, StepRecord(exhibit)
@@ -44,12 +43,11 @@ def test_the_recorded_step_ends_as_the_unrecorded_one_bit_for_bit(subtests: pyte
             assert record.after[0].tobytes() == twin.world.state.pose.tobytes()
             assert record.after[1].tobytes() == twin.world.state.velocity.tobytes()
             assert state(exhibit) == before  # the exhibit itself has not moved
+            later = copy.deepcopy(record.exhibit)
             for _ in range(3):  # and what both remember for the next steps is the same
                 twin.step()
-                record_twin = record.exhibit
-                record_twin.step()
-            assert state(record_twin) == state(twin)
-            moment.cache_clear()
+                later.step()
+            assert state(later) == state(twin)
 
 
 @pytest.mark.parametrize("name", MOMENTS)
@@ -84,6 +82,9 @@ def test_the_chosen_axis_is_the_one_of_least_overlap_and_gives_normal_and_depth(
         with subtests.test(name=name):
             _, record = moment(name)
             for pair in record.pairs:
+                (low_a, high_a), (low_b, high_b) = (np.split(record.boxes[body], 2) for body in pair.bodies)
+                assert (low_a <= high_b).all()  # only bodies whose boxes overlap make a pair
+                assert (low_b <= high_a).all()
                 gaps = [axis.gap for axis in pair.axes]
                 assert gaps[pair.chosen] == pytest.approx(max(gaps), abs=1e-3)
                 if pair.contact is None:
@@ -100,24 +101,11 @@ def test_the_chosen_axis_is_the_one_of_least_overlap_and_gives_normal_and_depth(
             assert sorted(touching) == list(range(len(record.contacts) if record.contacts else 0))
 
 
-def test_boxes_hold_their_bodies_and_only_overlapping_ones_make_pairs(subtests: pytest.Subtests):
-    for name in MOMENTS:
-        with subtests.test(name=name):
-            _, record = moment(name)
-            low, high = record.boxes[:, :2], record.boxes[:, 2:]
-            assert (low <= record.before[0][:, :2]).all() or name == "slopes"  # a wedge's own frame is its middle
-            assert (low < high).all()
-            for pair in record.pairs:
-                a, b = pair.bodies
-                assert (low[a] <= high[b]).all()
-                assert (low[b] <= high[a]).all()
-
-
 def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pytest.Subtests):
     for name in MOMENTS:
         with subtests.test(name=name):
             _, record = moment(name)
-            for followed in (*record.pairs[:12], *([] if record.pairs else [None])):
+            for followed in (*record.pairs[:4], *([] if record.pairs else [None])):
                 pieces = record.pieces(followed)
                 kinds = list(dict.fromkeys(piece.kind for piece in pieces))
                 assert kinds[0] == "boxes"
@@ -127,7 +115,7 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
                 )
                 of_pair = {piece.impulse.contact for piece in pieces if piece.impulse}
                 assert of_pair <= {followed and followed.contact}
-                for piece in pieces[:40] + pieces[-10:]:
+                for piece in pieces[:20] + pieces[-5:]:
                     source = source_of(piece.function)
                     assert source is not None
                     numbers = {number for number, _ in source.lines}
@@ -136,24 +124,6 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
                     sentences = " ".join([record.sentence(piece, followed), *(piece.notes or {}).values()])
                     assert "nan" not in sentences
                     assert "{" not in sentences
-
-
-def _size(record: StepRecord, contact: int) -> float:
-    assert record.contacts is not None
-    return float(record.contacts.impulse[contact, 0])
-
-
-def test_a_rebound_begins_with_nothing_and_ends_with_an_impulse():
-    _, record = moment("bounce")
-    pair = max(record.pairs, key=lambda pair: -1 if pair.contact is None else _size(record, pair.contact))
-    pieces = {piece.kind: piece for piece in reversed(record.pieces(pair))}
-    first = pieces["impulses"].impulse
-    assert first is not None
-    assert first.before[0] == 0
-    assert first.after[0] > 1
-    code = dict(source_of(pieces["impulses"].function).lines)
-    assert "velocity[self.index]" in code[pieces["impulses"].line or 0]
-    assert "colour.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]
 
 
 def test_a_hand_that_pulls_is_part_of_the_step():

@@ -1,24 +1,125 @@
-"""What flies and what is said keep clear of each other: paths, panels, read-outs, hints."""
+"""Words of a flight: clear of the craft and of each other, in one language, and of the right pilot."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pygame
 import pytest
 
-from ai.lander.environment import Outcome
+from ai.lander.missions import MISSIONS
 from game.core import texts
+from game.core.scene import Push
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import VIEW_SIZE
+from game.explain import explained
 from game.flight import networks
+from game.scenes.logbook.scene import LogbookScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
+from game.ui.tooltip import draw_tooltip
+from tests.game.play import ends
+from tests.game.play.ends import ON_PAD, TOO_FAST, end
 from tests.support.driver import Driver
 from tests.support.flights import play
-from tests.support.reading import Weighs
+from tests.support.reading import OnlyFlies, Weighs
 
 Open = Callable[..., Driver]
-READ_OUTS = 640
+
+
+@pytest.mark.parametrize(("size", "letters"), [((1280, 720), "normal"), ((800, 600), "largest")])
+def test_no_tooltip_of_help_covers_its_words(open_game: Open, monkeypatch: pytest.MonkeyPatch, size, letters: str):
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
+    boxes: list[pygame.FRect] = []
+    monkeypatch.setattr(explained, "draw_tooltip", lambda *given: boxes.append(draw_tooltip(*given)))
+    driver = open_game(PlayScene, 4)
+    driver.resize(size)
+    driver.write_in(letters)
+    for word in HELP:
+        driver.frames(3)
+        canvas = driver.top.laid_on(driver.app.canvas)
+        driver.click(play(driver)._head.help_boxes(canvas)[word].center)
+        driver.frames(2)
+        words = play(driver)._head.help_boxes(canvas)  # what else is said may have moved them
+        driver.move((words[word].centerx + 1, words[word].centery))
+        boxes.clear()
+        driver.frames(40)
+        assert boxes, word
+        assert boxes[-1].collidelist([*words.values()]) == -1, word
+
+
+def test_escape_pauses_until_the_card_is_there(open_game: Open):
+    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
+    driver.frames(2)
+    assert texts.HINT_PAUSE in driver.hints()
+    for _ in range(2):  # before the first key, and after it
+        driver.key(pygame.K_ESCAPE)
+        assert driver.top_name == "FlightPauseScene"
+        driver.key(pygame.K_ESCAPE)
+        driver.key(pygame.K_UP)
+    end(driver, TOO_FAST)
+    assert texts.HINT_LEAVE in driver.hints()
+    assert texts.HINT_PAUSE not in driver.hints()
+
+
+class Own(OnlyFlies):
+    path = Path("mine.py")
+
+
+def test_a_pilot_of_ones_own_is_called_by_its_name(
+    open_game: Open, monkeypatch: pytest.MonkeyPatch, written: list[str]
+):
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("mine.py", Own()))
+    driver = open_game(PlayScene, 4)
+    driver.frames(2)
+    driver.key(pygame.K_UP)
+    driver.frames(5)
+    driver.key(pygame.K_TAB)
+    driver.frames(5)
+    assert any(words.startswith("mine.py flies.") for words in written)
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(3)
+    assert texts.PAUSE_PILOT.format(name="mine.py") in written
+    driver.key(pygame.K_ESCAPE)
+    end(driver, TOO_FAST)
+    driver.frames(3)
+    assert any(words.startswith("mine.py ") and words.endswith(" %") for words in written)
+    driver.app.scenes.apply(Push(LogbookScene(driver.app.context)))
+    driver.frames(3)
+    assert texts.NOT_COUNTED["handed_over"].format(who="mine.py") in " ".join(written)
+    named = {words for words in written if "network" in words.lower()}
+    assert named <= {texts.PAUSE_TAKE_NETWORK, texts.SIX_FUTURES_WHY}, named
+
+
+def test_every_word_of_play_and_its_pause_changes_with_the_language(
+    open_game: Open, monkeypatch: pytest.MonkeyPatch, written: list[str]
+):
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
+    same = {"Enter", "Esc", "Tab", "stand-in", "DRIFT", "Mission"}
+
+    def words() -> set[str]:
+        written.clear()
+        driver.frames(2)
+        return {each for each in written if sum(letter.isalpha() for letter in each) > 3} - same
+
+    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
+    for state in ("pause", "waiting", "card"):
+        if state == "pause":
+            driver.key(pygame.K_ESCAPE)
+        if state == "card":
+            end(driver, ON_PAD)
+        before = words()
+        with driver.speaking("de"):
+            german = words()
+            assert len(german) > 2
+            assert not german & before, state
+        assert not words() & german, state
+        if state == "pause":
+            driver.key(pygame.K_ESCAPE)
+
+
+# What flies and what is said keep clear of each other: paths, panels, read-outs, hints.
 
 
 @pytest.fixture
@@ -34,23 +135,7 @@ def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -
 
 def place(driver: Driver, *state: float) -> None:
     play(driver).flown.waiting = False
-    play(driver).flight.env.place(np.ones(1, bool), np.array([state]))
-
-
-def drawn(monkeypatch: pytest.MonkeyPatch, *kinds: str) -> list[tuple[float, float]]:
-    """Note where dots and markers are drawn from now on."""
-    places: list[tuple[float, float]] = []
-    for kind in kinds:
-        monkeypatch.setattr(Canvas, kind, note(getattr(Canvas, kind), places, 1 if kind == "marker" else 0))
-    return places
-
-
-def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) -> Callable[..., None]:
-    def noted(canvas: Canvas, *args: object, **more: object) -> None:
-        places.append(args[at])
-        draw(canvas, *args, **more)
-
-    return noted
+    ends.place(play(driver).flight.env, *state)
 
 
 def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(shared: Driver, monkeypatch):
@@ -67,20 +152,6 @@ def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(share
     panels.clear()
     shared.frames(3)
     assert not panels
-
-
-def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Open, monkeypatch):
-    driver = open_game(PlayScene, 4)
-    driver.frames(40)
-    scene = play(driver)
-    x, y = scene.flight.env.position[0].tolist()
-    scene.flown.path_preview.drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
-    places = drawn(monkeypatch, "dot", "marker")
-    scene.flown.path_preview.draw(
-        driver.app.canvas, scene.flown.scenery.view(driver.app.canvas.scale), scene.flown.scenery.clear.head
-    )
-    assert places
-    assert min(row for _, row in places) > scene.flown.scenery.clear.head
 
 
 def test_a_mark_on_the_way_of_coasting_says_whether_the_network_still_lands_from_there(open_game: Open, monkeypatch):
@@ -100,31 +171,3 @@ def test_a_mark_on_the_way_of_coasting_says_whether_the_network_still_lands_from
         assert mark.now() == texts.EXPLAIN_COASTING_NOW[key].format(seconds=coasting[0])
     flown.path_preview.draw(canvas, view, 0.0)
     assert len(canvas.explained) == 1
-
-
-@pytest.mark.parametrize("state", [(29.9, 3.0, 6.0, 0.0, 0, 0), (0, 28.9, 0, 6.0, 0, 0), (-29.9, 12, -6.0, 0, 0, 0)])
-@pytest.mark.parametrize("calm", [True, False])
-def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context, monkeypatch, state, calm: bool):
-    context.settings.reduced_motion = calm
-    context.settings_file.save(context.settings)
-    driver = open_game(PlayScene, 4)
-    place(driver, *state)
-    driver.frames(10)
-    assert play(driver).flight.outcome is Outcome.OUT_OF_BOUNDS
-    canvas = driver.app.canvas
-    places = drawn(monkeypatch, "marker")
-    play(driver).flown.scenery.draw_craft(canvas, 1.0)
-    ((x, y),) = places
-    assert 0 < x < 1280
-    assert 80 < y < READ_OUTS
-
-
-def test_the_flight_keeps_off_the_panel(shared: Driver):
-    place(shared, 0, 12, 0, 0, 0, 0)
-    shared.frames(6)
-    flown = play(shared).flown
-    assert flown.clear.right < flown.copilot_panel.box(shared.app.canvas.reading).left
-    shared.key(pygame.K_F1)
-    shared.frames(2)
-    assert not flown.thinks
-    assert flown.clear.right == VIEW_SIZE[0]

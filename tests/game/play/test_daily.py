@@ -21,6 +21,7 @@ from game.scenes.play.daily import DailyStart, DaysScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.listing import ListRow
+from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
 from tests.support.flights import kept, play
 
@@ -33,6 +34,10 @@ def day_scene(context: Context) -> Scene:
     return DaysScene(context, TODAY)
 
 
+def today(context: Context) -> Scene:
+    return PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir)))
+
+
 def flown(day: date) -> Flight:
     """A flight of a day's start by the scripted pilot, as if by hand."""
     flight, pilot = Flight(day.toordinal(), pads=3), ScriptedPilot()
@@ -41,19 +46,16 @@ def flown(day: date) -> Flight:
     return flight
 
 
-def crash(driver: Driver) -> PlayScene:
-    """Touch a key, fall, and wait for the card."""
-    driver.frames(3)
-    scene = play(driver)
-    driver.key(pygame.K_UP)
-    while not scene.flight.over:
-        driver.skip(10)
-    driver.skip(240)
-    return scene
-
-
 def attempt(context: Context, day: date = TODAY) -> Attempt | None:
     return Days(context.user_dir).attempts.get(day.isoformat())
+
+
+def note(context: Context, day: date) -> Attempt:
+    """A first attempt of a day that was landed, as it is noted."""
+    record = kept(context, flown(day), time.time() - (TODAY - day).total_seconds(), alone=True, course="daily")
+    noted = Attempt(day.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file)
+    Days(context.user_dir).note(noted)
+    return noted
 
 
 @pytest.fixture
@@ -67,11 +69,11 @@ def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, cont
     driver = open_game(day_scene)
     driver.frames(2)
     driver.press_on(texts.DAYS_FLY)
-    driver.frames(30)
+    driver.frames(10)
     assert play(driver).credit.counts
     assert attempt(context) is None  # it hangs, and nothing has begun
-    scene = crash(driver)
-    first = attempt(context)
+    end(driver, TOO_FAST)
+    first, scene = attempt(context), play(driver)
     assert first
     assert (first.outcome, first.barred) == (scene.flight.outcome.name, "")
     assert Records(context.user_dir).read(first.file).recording == scene.flight.recording
@@ -81,10 +83,9 @@ def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, cont
     assert again.credit.bar == "day_again"
     assert again.credit.notice == texts.NOT_COUNTED["day_again"]
     assert again.flown.ghost.name == texts.DAILY_GHOST_TODAY
-    crash(driver)
+    end(driver, TOO_FAST)
     assert attempt(context) == first
-    entries = Records(context.user_dir).entries()
-    assert [entry.alone for entry in entries] == [True, False]
+    assert [entry.alone for entry in Records(context.user_dir).entries()] == [True, False]
 
 
 def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
@@ -99,20 +100,16 @@ def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
     driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
     driver.frames(3)
     assert play(driver).credit.bar == "day_again"
-    assert attempt(context) == Attempt(TODAY.isoformat())
-    crash(driver)
+    end(driver, TOO_FAST)
     assert attempt(context) == Attempt(TODAY.isoformat())  # practice changes nothing
     driver = open_game(day_scene)
     driver.frames(2)
-    assert isinstance(driver.top, DaysScene)
     assert driver.top.days[0] == TODAY
     assert driver.widget(texts.DAYS_FLY_AGAIN)
 
 
 def test_a_day_of_the_past_is_flown_beside_ones_best_flight_of_it(open_game: Open, context: Context):
-    record = kept(context, flown(YESTERDAY), time.time() - 24 * 3600, alone=True, course="daily")
-    days = Days(context.user_dir)
-    days.note(Attempt(YESTERDAY.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file))
+    note(context, YESTERDAY)
     driver = open_game(day_scene)
     driver.frames(2)
     driver.key(pygame.K_DOWN)
@@ -123,38 +120,28 @@ def test_a_day_of_the_past_is_flown_beside_ones_best_flight_of_it(open_game: Ope
     assert scene.credit.bar == "day_past"
     assert scene.flight.recording.seed == YESTERDAY.toordinal()
     assert scene.flown.ghost.name == texts.DAILY_GHOST
-    crash(driver)
+    end(driver, TOO_FAST)
     assert attempt(context) is None
     assert attempt(context, YESTERDAY).outcome == Outcome.LANDED.name
-
-
-def test_the_best_flight_of_a_day_is_a_landing_of_that_day(context: Context):
-    for day in (YESTERDAY, TODAY):
-        kept(context, flown(day), time.time(), alone=True, course="daily")
-    found = Days(context.user_dir).best_flight(TODAY)
-    assert found.recording.seed == TODAY.toordinal()
-    assert Days(context.user_dir).best_flight(TODAY - timedelta(days=9)) is None
+    assert Days(context.user_dir).best_flight(YESTERDAY).recording.seed == YESTERDAY.toordinal()
+    assert Days(context.user_dir).best_flight(TODAY) is None, "which is of another day"
 
 
 def test_the_line_to_paste_says_nothing_of_the_way(open_game: Open, context: Context, clipboard: list[str]):
-    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
-    crash(driver)
-    driver.key(pygame.K_k)
-    assert clipboard[-1] == f"Tranquility {TODAY} · crashed · first attempt"
-    assert driver.said == texts.CODE_LINE_COPIED.format(line=clipboard[-1])
-    driver.key(pygame.K_r)
-    crash(driver)
-    driver.key(pygame.K_k)
-    assert clipboard[-1] == f"Tranquility {TODAY} · crashed · practice"
+    driver = open_game(today)
+    for said in ("first attempt", "practice"):
+        end(driver, TOO_FAST)
+        driver.key(pygame.K_k)
+        assert clipboard[-1] == f"Tranquility {TODAY} · crashed · {said}"
+        assert driver.said == texts.CODE_LINE_COPIED.format(line=clipboard[-1])
+        driver.key(pygame.K_r)
     landed = Attempt("2026-11-22", "LANDED", 84)
     assert landed.line == "Tranquility 2026-11-22 · landed · 84 points · first attempt"
     assert Attempt("2026-11-22", "LANDED", 84, "practice").line.endswith("first attempt, made easier")
 
 
 def test_everything_of_a_day_can_be_copied_and_watched(open_game: Open, context: Context, clipboard: list[str]):
-    record = kept(context, flown(TODAY), time.time(), alone=True, course="daily")
-    first_attempt = Attempt(TODAY.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file)
-    Days(context.user_dir).note(first_attempt)
+    first_attempt = note(context, TODAY)
     driver = open_game(day_scene)
     driver.frames(2)
     driver.press_on(texts.DAYS_COPY)
@@ -166,31 +153,27 @@ def test_everything_of_a_day_can_be_copied_and_watched(open_game: Open, context:
     assert isinstance(driver.top, ReplayScene)
 
 
-def test_a_damaged_line_is_counted_and_the_rest_is_read(open_game: Open, context: Context):
+def test_a_damaged_line_is_counted_the_rest_is_read_and_what_has_ended_is_never_replaced(
+    open_game: Open, context: Context
+):
     days = Days(context.user_dir)
-    days.note(Attempt("2026-01-01", "LANDED", 50))
+    for each in (Attempt("2026-01-01"), Attempt("2026-01-01", "CRASHED"), Attempt("2026-01-01", "LANDED", 99)):
+        days.note(each)
     with (context.user_dir / FILE_NAME).open("a") as file:
-        file.write('{"day": "2026-99-99"}\nhello\n{"day": "2026-01-02", "outcome": "CRASHED"}\n')
+        file.write('{"day": "2026-99-99"}\nhello\n{"day": "2026-01-02", "outcome": "LANDED"}\n')
     again = Days(context.user_dir)
-    assert [each.outcome for each in again.attempts.values()] == ["LANDED", "CRASHED"]
-    assert again.problem == texts.DAYS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
+    assert [each.outcome for each in again.attempts.values()] == ["CRASHED", "LANDED"]
+    assert again.problem == texts.FLIGHTS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
     driver = open_game(day_scene)
     driver.frames(2)
     assert driver.said == again.problem
 
 
-def test_a_first_attempt_that_has_ended_is_never_replaced(context: Context):
-    days = Days(context.user_dir)
-    for each in (Attempt("2026-01-01"), Attempt("2026-01-01", "CRASHED"), Attempt("2026-01-01", "LANDED", 99)):
-        days.note(each)
-    assert Days(context.user_dir).attempts["2026-01-01"].outcome == "CRASHED"
-
-
 def test_a_disk_that_cannot_be_written_is_reported(open_game: Open, context: Context):
     context.user_dir.mkdir(parents=True, exist_ok=True)
     (context.user_dir / FILE_NAME).mkdir()
-    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
-    crash(driver)
+    driver = open_game(today)
+    end(driver, TOO_FAST)
     assert texts.DAYS_NOT_KEPT.partition("{")[0] in driver.said
 
 
@@ -199,17 +182,13 @@ def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(
 ):
     day = date(2026, 11, 22)  # with level ground between two of its pads
     driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(day, Days(context.user_dir))))
-    driver.frames(3)
-    scene, env = play(driver), play(driver).flight.env
-    scene.flown.waiting = False
-    height = float(env.ground.height(np.array([-4.95]))[0])
-    env.place(np.ones(1, bool), np.array([[-4.95, height + 1.1, 0.0, -0.1, 0.0, 0.0]]))
-    while scene.ending.shown < 1:
-        driver.skip()
-    assert scene.flight.intact
-    assert scene.ending.card.title == texts.BESIDE_TITLE
+    height = float(play(driver).flight.env.ground.height(np.array([-4.95]))[0])
+    end(driver, (-4.95, height + 1.1, 0.0, -0.1, 0.0, 0.0))
+    assert play(driver).flight.intact
+    assert play(driver).ending.card.title == texts.BESIDE_TITLE
     driver.key(pygame.K_k)
-    first_attempt = Days(context.user_dir).attempts[day.isoformat()]
+    first_attempt = attempt(context, day)
+    assert first_attempt
     assert clipboard[-1] == first_attempt.line == f"Tranquility {day} · {texts.BESIDE_RESULT} · first attempt"
     driver = open_game(lambda context: DaysScene(context, day))
     driver.frames(2)

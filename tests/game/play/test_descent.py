@@ -1,6 +1,7 @@
 """Descent as it is played: one leg after another, what it counts, and how it ends."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pygame
@@ -14,12 +15,12 @@ from game.flight.replay import FlightReplay
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
+from tests.game.play.ends import TOO_FAST, end
 from tests.support.descent import stand_on
 from tests.support.driver import Driver
 from tests.support.flights import play
 
 Open = Callable[..., Driver]
-pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
 @pytest.fixture
@@ -58,9 +59,11 @@ def test_a_landing_leads_to_the_next_leg_which_hangs_on_its_feet_with_what_is_in
     assert descent(game).start == scene.flight.recording.leg
     assert (descent(game).start.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
     place = scene.flight.env.position.copy()
-    game.frames(60)
+    game.frames(10)
     assert (scene.flight.env.position == place).all()
     assert scene.flight.env.contacts.sum() == 0  # not a step has been flown
+    game.key(pygame.K_ESCAPE)
+    assert "PauseScene" in game.top_name
 
 
 def test_points_grow_with_the_row_of_landings_and_are_in_the_logbook(game: Driver, context: Context):
@@ -129,44 +132,79 @@ def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_
     assert best_descent(entries)[0] == 1
 
 
-def test_escape_pauses_a_run_under_way(game: Driver):
-    land(game)
-    game.key(pygame.K_ESCAPE)
-    assert "PauseScene" in game.top_name
-
-
-def test_the_menu_leads_to_it_and_the_pause_back(open_game: Open):
-    driver = open_game()
-    driver.key(pygame.K_RETURN)
-    driver.press_on(texts.FLIGHTS["descent"][0])
-    assert descent(driver).start.number == 1
-    driver.key(pygame.K_ESCAPE)
-    driver.press_on(texts.PAUSE_LEAVE)
-    driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "MenuScene"
-
-
-@pytest.mark.parametrize("key", [pygame.K_r, pygame.K_n])
-def test_another_start_asks_before_it_ends_a_run(game: Driver, key: int):
-    land(game)
-    game.keys(key)
-    assert game.top_name == "QuestionDialog"
-    assert "1 leg landed" in game.top.more
-    game.keys(pygame.K_RETURN)  # the answer in focus is the harmless one
-    assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
-    game.keys(key, pygame.K_ESCAPE)
-    assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
-    game.keys(key, pygame.K_RIGHT, pygame.K_RETURN)
-    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
-
-
-@pytest.mark.parametrize("key", [pygame.K_r, pygame.K_n])
-def test_another_start_comes_at_once_where_no_run_is_lost(game: Driver, key: int):
+def test_another_start_asks_before_it_ends_a_run_and_comes_at_once_where_none_is_lost(game: Driver):
     play(game).flown.waiting = False
     game.frames(3)
-    game.keys(key)
-    assert game.top_name == "PlayScene"
+    for key in (pygame.K_r, pygame.K_n):
+        game.keys(key)
+        assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
+        land(game)
+        game.keys(key)
+        assert game.top_name == "QuestionDialog"
+        assert "1 leg landed" in game.top.more
+        game.keys(pygame.K_RETURN)  # the answer in focus is the harmless one
+        assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+        game.keys(key, pygame.K_ESCAPE)
+        assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+        game.keys(key, pygame.K_RIGHT, pygame.K_RETURN)
+        assert (game.top_name, descent(game).start.number, descent(game).total) == ("PlayScene", 1, 0)
     land(game)
     crash(game)
-    game.keys(key)
-    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
+    game.key(pygame.K_n)
+    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1), "a run that has ended is not lost"
+
+
+# A tap counts, even if a slow frame brings the press and the release at once.
+
+pytestmark = pytest.mark.usefixtures("scripted_network")
+PAIRS: dict[str, list[tuple[int, dict[str, Any]]]] = {
+    "key": [(pygame.KEYDOWN, {"key": pygame.K_UP, "mod": 0}), (pygame.KEYUP, {"key": pygame.K_UP, "mod": 0})],
+    "pad": [
+        (pygame.CONTROLLERBUTTONDOWN, {"button": pygame.CONTROLLER_BUTTON_A, "instance_id": 0}),
+        (pygame.CONTROLLERBUTTONUP, {"button": pygame.CONTROLLER_BUTTON_A, "instance_id": 0}),
+    ],
+    "mouse": [
+        (pygame.MOUSEBUTTONDOWN, {"button": 1, "pos": (640, 300)}),
+        (pygame.MOUSEBUTTONUP, {"button": 1, "pos": (640, 300)}),
+    ],
+}
+
+
+def tap(driver: Driver, device: str) -> None:
+    """Press and let go within one frame."""
+    for kind, values in PAIRS[device]:
+        pygame.event.post(pygame.event.Event(kind, values))
+    driver.frames(1)
+
+
+@pytest.mark.parametrize(("device", "one_switch"), [("key", False), ("pad", True), ("mouse", False), ("mouse", True)])
+def test_a_tap_within_one_frame_begins_a_flight_that_waits(open_game: Open, device: str, one_switch: bool):
+    driver = open_game(PlayScene, 4)
+    driver.app.context.settings.one_switch = one_switch
+    driver.frames(3)
+    assert play(driver).waiting
+    tap(driver, device)
+    assert not play(driver).waiting
+    driver.frames(3)
+    actions = play(driver).flight.recording.actions
+    assert actions[0] >= 3  # it fires for the step of the press, and no longer
+    assert all(action < 3 for action in actions[1:])
+
+
+def test_a_tap_switches_a_latched_engine_on_and_the_next_one_off(open_game: Open):
+    driver = open_game(PlayScene, 4)
+    driver.app.context.settings.toggle_thrust = True
+    driver.frames(3)
+    for on in (True, False):
+        tap(driver, "key")
+        driver.frames(5)
+        assert (play(driver).flight.recording.actions[-1] >= 3) is on
+
+
+def test_the_tap_that_asks_for_another_start_does_not_begin_it(open_game: Open):
+    driver = open_game(PlayScene, 4, challenge=Descent())
+    end(driver, TOO_FAST)
+    for kind in (pygame.KEYDOWN, pygame.KEYUP):
+        pygame.event.post(pygame.event.Event(kind, key=pygame.K_SPACE, mod=0))
+    driver.frames(5)
+    assert play(driver).waiting

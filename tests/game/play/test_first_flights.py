@@ -18,38 +18,25 @@ from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.outcomes import outcome_card
+from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.sitting import CRASHES
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
+from tests.game.play.ends import BESIDE, ON_PAD, TOO_FAST, end, place
 from tests.support.driver import Driver
 from tests.support.flights import challenge_of, fly_out, play
-from tests.support.player import DEVICES, Player
+from tests.support.player import Player
 from tests.support.reading import Weighs
 
 Open = Callable[..., Driver]
-ON_PAD = (0.0, 2.6, 0.0, -0.4, 0.0, 0.0)
-TOO_FAST = (0.0, 4.0, 0.0, -6.0, 0.0, 0.0)
-BESIDE = (8.0, 2.2, 0.0, -0.4, 0.0, 0.0)
 
 
 @pytest.fixture(autouse=True)
 def weighing_network(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-
-
-def end(driver: Driver, state: tuple[float, ...]) -> None:
-    """Bring the flight to its end from a state, and to its card."""
-    driver.frames(2)
-    driver.key(pygame.K_UP)
-    play(driver).flight.env.place(np.ones(1, bool), np.array([state]))
-    for _ in range(200):
-        driver.skip()
-        if play(driver).ending.shown == 1:
-            return
-    raise AssertionError("no card came")
 
 
 # The ladder
@@ -58,14 +45,14 @@ def end(driver: Driver, state: tuple[float, ...]) -> None:
 def test_who_pushes_nothing_for_a_second_and_a_half_can_still_land_on_the_lowest_rungs():
     agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
     for rung in (0, 1):
-        env = LanderEnv(200, 1, LADDER.spawn(rung), frame_skip=1)
+        env = LanderEnv(60, 1, LADDER.spawn(rung), frame_skip=1)
         env.reset()
-        for step in range(90 + 60 * 30):
-            if step < 90:
-                action = np.zeros(200, np.intp)
-            elif step % 4 == 2:
+        step, action = 0, np.zeros(60, np.intp)
+        while (env.outcome == Outcome.FLYING).any():
+            if step >= 90 and step % 4 == 2:
                 action = agent.act(env.observe(), held=env.actions)
             env.fly(action)
+            step += 1
         assert (env.outcome == Outcome.LANDED).all(), rung
 
 
@@ -81,18 +68,15 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     assert play(driver).ending.card.title == texts.FIRST_LANDING
     assert play(driver).ending.card.climb == texts.LADDER_UP.format(number=2)
     driver.key(pygame.K_RETURN)
-    assert play(driver).flight.recording.spawn == "rung_2"
     seed = play(driver).flight.recording.seed
-    end(driver, TOO_FAST)
-    assert play(driver).ending.card.climb == texts.LADDER_STAYS.format(number=2)
-    driver.key(pygame.K_RETURN)
-    assert play(driver).flight.recording.spawn == "rung_2"  # one miss changes nothing
-    end(driver, TOO_FAST)
-    written.clear()
-    driver.frames(2)
-    assert texts.LADDER_DOWN.format(number=1) in written
+    for climb in (texts.LADDER_STAYS.format(number=2), texts.LADDER_DOWN.format(number=1)):
+        assert play(driver).flight.recording.spawn == "rung_2"  # one miss changes nothing
+        end(driver, TOO_FAST)
+        assert play(driver).ending.card.climb == climb
+        written.clear()
+        driver.frames(2)
+        driver.key(pygame.K_RETURN)  # the same start, nearer
     assert texts.LADDER_NEARER in written
-    driver.key(pygame.K_RETURN)  # the same start, nearer
     assert (play(driver).flight.recording.seed, play(driver).flight.recording.spawn) == (seed, "rung_1")
     end(driver, BESIDE)
     assert settings.rung == 0
@@ -121,73 +105,76 @@ def test_another_try_is_the_very_same_start_and_the_top_is_flights_from_anywhere
     assert play(driver).ending.card.rung is None
 
 
-def test_who_has_landed_often_before_begins_at_the_top(context: Context):
-    def entry(outcome: str) -> Entry:
-        return Entry(0, outcome, 5, 1, 1, 1)
-
-    for landings, rung in ((0, 0), (4, 4), (60, TOP_RUNG)):
-        settings = Settings()
-        FreeFlight(settings).recall([entry("LANDED")] * landings + [entry("CRASHED")] * 3)
-        assert settings.rung == rung
-    settings = Settings(rung=2)
-    FreeFlight(settings).recall([entry("LANDED")] * 60)
-    assert settings.rung == 2
+def noted(rung: int, flight: Flight, *ends: Flight) -> tuple[FreeFlight, Settings]:
+    settings = Settings(rung=rung)
+    free = FreeFlight(settings)
+    for each in (flight, *ends):
+        free.note_end(each, Credit(each, settings, free))
+    return free, settings
 
 
-def test_the_choices_move_on_the_ladder_and_off_it(open_game: Open):
-    driver = open_game(PlayScene, ladder=True)
-    for direction, spawn in ((pygame.K_RIGHT, "random"), (pygame.K_LEFT, "rung_1")):
-        driver.frames(2)
-        driver.key(pygame.K_c)
-        while driver.form.focused.label != texts.CHOICES_LADDER:
-            driver.key(pygame.K_DOWN)
-        driver.keys(*[direction] * 12)
-        driver.key(pygame.K_ESCAPE)
-        assert play(driver).flight.recording.spawn == spawn
+def test_only_crashes_of_ones_own_lead_down_and_only_landings_of_ones_own_up():
+    def ended(*state: float) -> Flight:
+        flight = Flight(7, ScriptedPilot(), LADDER.spawn(3))
+        place(flight.env, *state)
+        return fly_out(flight)
 
-
-def test_a_landing_that_the_network_flew_leads_no_rung_up_and_the_card_says_which_do():
-    settings, flight = Settings(rung=0), Flight(7, ScriptedPilot(), LADDER.spawn(0))
+    crash, landing, beside = (ended(*state) for state in (TOO_FAST, ON_PAD, BESIDE))
+    for flights, rung in (([crash, crash], 2), ([crash, landing, crash], 4), ([beside] * 3, 3)):
+        assert noted(3, *flights)[1].rung == rung
+    flight = Flight(7, ScriptedPilot(), LADDER.spawn(0))
     flight.hand_over()
     fly_out(flight)
-    free = FreeFlight(settings)
+    free, settings = noted(0, flight)
     card = free.card(outcome_card(flight.env, flight.share), flight, Credit(flight, settings, free))
     assert flight.outcome is Outcome.LANDED
     assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
 
 
+def test_who_has_landed_often_before_begins_high_up_and_the_page_of_play_says_where(context: Context):
+    def entry(outcome: str, by_hand: float = 1.0) -> Entry:
+        return Entry(0, outcome, 5, 1, 1, by_hand)
+
+    for entries, rung in (
+        ([], 0), ([entry("LANDED")] * 4, 4), ([entry("LANDED", 0.0)] * 4, 0), ([entry("LANDED")] * 60, TOP_RUNG)
+    ):  # fmt: skip
+        settings = Settings()
+        FreeFlight(settings).recall([*entries, entry("CRASHED")])
+        assert settings.rung == rung
+    settings = Settings(rung=2)
+    FreeFlight(settings).recall([entry("LANDED")] * 60)
+    assert settings.rung == 2
+    context.settings.rung = -1
+    page = FlightsScene(context)
+    assert page._figures["free"] == texts.FLIGHTS_RUNG.format(number=1)
+    assert context.settings.rung == 0
+    context.settings.three_pads = True
+    page.enter()
+    assert page._figures["free"] == texts.THREE_PADS.lower()
+
+
 # Help after three crashes
 
 
-@pytest.mark.parametrize("device", DEVICES)
-def test_after_three_crashes_one_key_turns_the_dial(open_game: Open, written: list[str], device: str):
-    driver = player = Player(open_game(PlayScene), device)
-    for number in range(CRASHES):
-        written.clear()
-        end(driver, TOO_FAST)
-        driver.frames(2)
-        assert (texts.HELP_OFFER in written) == (texts.HELP_HINT in written) == (number == CRASHES - 1)
-        if number < CRASHES - 1:
+def test_after_three_crashes_without_a_landing_between_one_key_or_a_click_turns_the_dial(
+    open_game: Open, written: list[str]
+):
+    driver = open_game(PlayScene)
+    for state in (TOO_FAST, TOO_FAST, ON_PAD, *[TOO_FAST] * CRASHES):
+        if play(driver).ending.card:
+            assert texts.HELP_HINT not in driver.hints()
             driver.key(pygame.K_RETURN)
-    player.press("hand over")
+        written.clear()
+        end(driver, state)
+    driver.frames(2)
+    assert texts.HELP_OFFER in written
+    driver.click(driver.hints()[texts.HELP_HINT])
     settings = driver.app.context.settings
     assert (settings.assist, settings.copilot) == (HELP["guard"], "guardian")
     driver.frames(2)
     assert not play(driver).flight.over
     assert play(driver).flight.shared
     assert play(driver).flight.hand is StickHolder.HUMAN
-
-
-def test_a_click_takes_the_help_and_a_landing_counts_anew(open_game: Open):
-    driver = open_game(PlayScene)
-    for state in (TOO_FAST, TOO_FAST, ON_PAD, TOO_FAST, TOO_FAST):
-        end(driver, state)
-        assert texts.HELP_HINT not in driver.hints()
-        driver.key(pygame.K_RETURN)
-    end(driver, TOO_FAST)
-    driver.frames(2)
-    driver.click(driver.hints()[texts.HELP_HINT])
-    assert driver.app.context.settings.assist == HELP["guard"]
 
 
 def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: Open, written: list[str]):
@@ -205,7 +192,7 @@ def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: 
         driver.frames(2)
         steps = len(play(driver).flight.recording.actions)
         written.clear()
-        driver.frames(20)
+        driver.frames(10)
         assert play(driver).waiting, way
         assert len(play(driver).flight.recording.actions) == steps > 5, way
         assert texts.WAITS_AGAIN in written, way
@@ -218,12 +205,18 @@ def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: 
 # The rescue
 
 
-def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
+def at_lesson(open_game: Open, name: str) -> Driver:
     driver = open_game(PlayScene, 0, challenge=Tutorial())
-    challenge, controls = challenge_of(driver), driver.app.context.controls
+    while challenge_of(driver).lesson.name != name:
+        challenge_of(driver).skip()
+    return driver
+
+
+def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
+    driver = at_lesson(open_game, "dial")
+    challenge, controls, flight = challenge_of(driver), driver.app.context.controls, play(driver).flight
     while challenge.lesson.name != "rescue":
-        challenge.skip() if challenge.lesson.name != "dial" else challenge.follow(play(driver).flight)
-    flight = play(driver).flight
+        challenge.follow(flight)
     first, later = (words.split("{")[0] for words in texts.TUTORIAL["rescue"])
     assert challenge.sentence(flight, controls).startswith(first)
     for _ in range(1000):  # whatever it does up there
@@ -236,37 +229,27 @@ def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Op
     assert challenge.sentence(flight, controls).startswith(later)
 
 
-@pytest.mark.parametrize("device", DEVICES)
-def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: Open, written: list[str], device: str):
-    driver = player = Player(open_game(PlayScene, 0, challenge=Tutorial()), device)
-    while (challenge := challenge_of(driver)).lesson.name != "dial":
-        challenge.skip()
-    play(driver).retry()
-    driver.frames(2)
+def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: Open, written: list[str]):
+    player = Player(at_lesson(open_game, "dial"), "keys")
+    play(player).retry()
+    player.frames(2)
     player.hold("left", down=True)
-    driver.frames(20)
+    player.frames(10)
     player.hold("left", down=False)
-    assert play(driver).waiting  # until the dial is turned
-    for _ in range(5):
-        if device == "keys":
-            driver.key(pygame.K_PLUS)
-        else:
-            driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, 32000)
-            driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, 0)
+    assert play(player).waiting  # until the dial is turned
+    player.key(pygame.K_PLUS)
     written.clear()
-    driver.frames(3)
+    player.frames(3)
     assert any(word.startswith(texts.TUTORIAL_PATHS.split("{")[0]) for word in written)
-    assert play(driver).flight.shared
-    assert play(driver).flown.path_preview.asks
+    assert play(player).flight.shared
+    assert play(player).flown.path_preview.asks
     player.hold("left", down=True)
-    driver.frames(60)
-    assert challenge.lesson.name == "rescue"
-    assert driver.app.context.settings.assist == 0
+    player.frames(60)
+    assert challenge_of(player).lesson.name == "rescue"
+    assert player.app.context.settings.assist == 0
 
 
 def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
-    driver = open_game(PlayScene, 0, challenge=Tutorial())
-    while play(driver).challenge and challenge_of(driver).lesson.name != "dial":
-        driver.key(pygame.K_n)
+    driver = at_lesson(open_game, "dial")
     driver.key(pygame.K_n)
     assert play(driver).challenge.free

@@ -15,8 +15,8 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.play.challenge import Race
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.digits import DigitTrainingScene
-from game.scenes.train.networks import NetworksScene
 from game.ui.context import Context
+from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play
 
@@ -50,7 +50,7 @@ def paste(driver: Driver, text: str, clipboard: list[str]) -> None:
     driver.frames(2)
 
 
-@pytest.mark.parametrize("scene", [MenuScene, LogbookScene, PlayScene, NetworksScene, DigitTrainingScene])
+@pytest.mark.parametrize("scene", [MenuScene, PlayScene, DigitTrainingScene])
 def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboard: list[str], scene):
     driver = open_game(scene)
     paste(driver, f"Beat this: “{sharing.code(record)}”", clipboard)
@@ -59,21 +59,10 @@ def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboa
     assert isinstance(driver.top, scene)
 
 
-def test_the_logbook_has_a_word_for_it(open_game: Open, record: Record, clipboard: list[str]):
-    driver = open_game(LogbookScene)
-    driver.frames(2)
-    driver.press_on(texts.CODE_PASTE)
-    assert driver.said == texts.CODE_PASTE_EMPTY
-    clipboard.append(sharing.code(record))
-    driver.press_on(texts.CODE_PASTE)
-    assert page(driver).claimed
-
-
-@pytest.mark.parametrize("scene", [MenuScene, PlayScene, NetworksScene])
-def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, record: Record, tmp_path, scene):
+def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, record: Record, tmp_path):
     code = tmp_path / "from a friend.txt"
     code.write_text(sharing.code(record))
-    for path in (code, context.user_dir / "flights" / record.entry.file):
+    for path, scene in ((code, MenuScene), (context.user_dir / "flights" / record.entry.file, PlayScene)):
         driver = open_game(scene)
         driver.frames(2)
         driver.post(pygame.DROPFILE, file=str(path))
@@ -83,31 +72,22 @@ def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, reco
         assert isinstance(driver.top, scene)
 
 
-@pytest.mark.parametrize(
-    ("content", "why"),
-    [
-        (b"tranq2-000-over", texts.CODE_REFUSED["damaged"]),
-        (b"tranq2-000", texts.CODE_REFUSED["cut"]),
-        (b"tranq-000-over", texts.CODE_REFUSED["older"]),
-        (b"hello", texts.CODE_REFUSED["none"]),
-        (b"\xff\xfe", texts.CODE_REFUSED["none"]),
-        (b"x" * 2_000_000, ""),
-    ],
-)
-def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, content, why):
+def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, clipboard: list[str]):
     driver = open_game()
     path = tmp_path / "strange.bin"
-    path.write_bytes(content)
-    driver.post(pygame.DROPFILE, file=str(path))
-    assert driver.top_name == "MenuScene"
-    assert driver.said.startswith("strange.bin: ")
-    assert why in driver.said
-
-
-def test_pasting_what_is_no_code_is_refused(open_game: Open, clipboard: list[str]):
-    driver = open_game()
+    refused = texts.CODE_REFUSED
+    for content, why in (
+        (b"tranq2-000-over", refused["damaged"]), (b"tranq2-000", refused["cut"]),
+        (b"tranq-000-over", refused["older"]), (b"hello", refused["none"]), (b"\xff\xfe", refused["none"]),
+        (b"x" * 2_000_000, ""),
+    ):  # fmt: skip
+        path.write_bytes(content)
+        driver.post(pygame.DROPFILE, file=str(path))
+        assert driver.top_name == "MenuScene"
+        assert driver.said.startswith("strange.bin: ")
+        assert why in driver.said
     paste(driver, "tranq2-000", clipboard)
-    assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=texts.CODE_REFUSED["cut"])
+    assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=refused["cut"])
 
 
 def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, written: list[str]):
@@ -117,31 +97,26 @@ def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, writte
     driver.frames(2)
     assert page(driver).claimed.true is None
     assert claimed.words.startswith(texts.FRIEND_CHECKING.partition("{")[0])
-    driver.frames(200)
+    page(driver).flight_replay.scout(10_000)
+    driver.frames(2)
     assert claimed.true
     assert texts.FRIEND_TRUE in written
     assert texts.FRIEND_LINE.format(where=texts.COURSE_FREE[1], claim=f"landed, {record.entry.score} points") in written
 
 
-@pytest.mark.parametrize(
-    ("changed", "words"),
-    [
-        ({"score": 999}, texts.WRONG_CLAIM.format(claim="landed, 999 points")),
-        ({"outcome": "CRASHED", "score": 0}, texts.WRONG_CLAIM.format(claim="crashed")),
-        ({"course": "daily"}, texts.WRONG_PLACE),
-        (None, texts.WRONG_END),
-    ],
-)
-def test_a_wrong_claim_is_said_to_be_wrong(open_game: Open, record: Record, changed, words):
-    if changed is None:
-        claimed = replace(record, end=(5.0, 5.0, 0.0))
-    else:
-        claimed = replace(record, entry=replace(record.entry, **changed))
+def test_a_wrong_claim_is_said_to_be_wrong(open_game: Open, record: Record):
     driver = open_game()
-    driver.post(pygame.DROPTEXT, text=sharing.code(claimed))
-    driver.frames(200)
-    assert page(driver).claimed.true is False
-    assert f"landed, {record.entry.score} points. Wrong: {words}." in page(driver).claimed.words
+    for claimed, words in (
+        (replace(record, entry=replace(record.entry, score=999)), texts.WRONG_CLAIM.format(claim="landed, 999 points")),
+        (replace(record, entry=replace(record.entry, course="daily")), texts.WRONG_PLACE),
+        (replace(record, end=(5.0, 5.0, 0.0)), texts.WRONG_END),
+    ):
+        driver.post(pygame.DROPTEXT, text=sharing.code(claimed))
+        page(driver).flight_replay.scout(10_000)
+        driver.frames(2)
+        assert page(driver).claimed.true is False
+        assert f"landed, {record.entry.score} points. Wrong: {words}." in page(driver).claimed.words
+        driver.key(pygame.K_ESCAPE)
 
 
 def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, record: Record, clipboard: list[str]):
@@ -153,10 +128,7 @@ def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, re
     scene = play(driver)
     assert isinstance(scene.challenge, Race)
     assert scene.flown.ghost.name == texts.FRIEND_NAME
-    driver.key(pygame.K_UP)
-    while not scene.flight.over:
-        driver.skip(10)
-    driver.skip(240)
+    end(driver, TOO_FAST)
     driver.key(pygame.K_k)
     assert driver.said == texts.CODE_COPIED
     answer = sharing.flight_in(clipboard[-1])

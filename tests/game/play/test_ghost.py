@@ -13,6 +13,7 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.play.ghost import Ghost
 from game.scenes.play.scene import PlayScene
 from game.world.camera import Camera, View
+from tests.game.play.ends import end, place
 from tests.support.driver import Driver
 from tests.support.flights import play
 
@@ -49,14 +50,6 @@ def ghost(driver: Driver) -> Ghost:
     return found
 
 
-def end(driver: Driver, *start: float) -> None:
-    """Bring the player's own flight to its end from a state near the ground."""
-    play(driver).flown.waiting = False
-    play(driver).flight.env.place(np.ones(1, bool), np.array([start]))
-    while play(driver).ending.shown < 1:
-        driver.skip()
-
-
 def test_a_ghost_flies_as_the_rival_would_alone():
     pilot, ghost = ScriptedPilot(), Ghost(Flight(7, ScriptedPilot()), "pilot")
     env = LanderEnv(1, 7, frame_skip=DECISION_STEPS)
@@ -86,32 +79,29 @@ def test_both_begin_at_one_place_and_time_and_yours_is_the_same_as_without_a_gho
     assert np.array_equal(alone.env.position, mine.env.position)
 
 
-def test_escape_leaves_after_the_end(duel):
+def test_retry_and_a_new_start_are_for_both_and_escape_leaves_after_the_end(duel):
     driver = duel(Idle())
-    end(driver, *FALLING)
+    for key, same in ((pygame.K_r, True), (pygame.K_n, False)):
+        first = play(driver).flight.env.position.copy()
+        end(driver, FALLING)
+        driver.key(key)
+        mine, theirs = play(driver).flight, ghost(driver).flight
+        assert play(driver).waiting
+        assert np.array_equal(mine.env.position, theirs.env.position)
+        assert np.array_equal(mine.env.position, first) is same
+    end(driver, FALLING)
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "MenuScene"
 
 
-@pytest.mark.parametrize(("key", "same"), [(pygame.K_r, True), (pygame.K_n, False)])
-def test_retry_and_a_new_start_are_for_both(duel, key: int, same: bool):
-    driver = duel(Idle())
-    first = play(driver).flight.env.position.copy()
-    end(driver, *FALLING)
-    driver.key(key)
-    mine, theirs = play(driver).flight, ghost(driver).flight
-    assert play(driver).waiting
-    assert np.array_equal(mine.env.position, theirs.env.position)
-    assert np.array_equal(mine.env.position, first) is same
-
-
 def test_a_ghost_that_still_flies_has_no_figures_and_flies_on(duel):
     driver = duel(ScriptedPilot())
-    end(driver, *FALLING)
+    end(driver, FALLING)
     yours = play(driver).flight.env
     row = ghost(driver).row(yours)
     assert (row.name, row.result, row.figures) == ("checkpoint 14 s", "still flying", {})
-    driver.skip(1200)
+    while not ghost(driver).flight.over:
+        ghost(driver).step()
     row = ghost(driver).row(yours)
     assert row.result == "landed"
     assert row.figures["TIME"] == (f"{float(ghost(driver).flight.env.time[0]):.1f}", "s")
@@ -121,7 +111,7 @@ def test_of_two_who_land_the_card_says_who_was_first():
     ghost, yours = Ghost(Flight(1, Idle()), "rival"), LanderEnv(1, 1, frame_skip=1)
     yours.reset()
     for env in (ghost.flight.env, yours):
-        env.place(np.ones(1, bool), np.array([[0, PAD, 0, 0, 0, 0]]))
+        place(env, 0, PAD, 0, 0, 0, 0)
         while env.outcome[0] == Outcome.FLYING:
             env.step(np.zeros(1, int))
     ended = ghost.flight.env.steps.copy()

@@ -15,11 +15,9 @@ from game.explain.readouts import flight_readouts
 from game.flight import flight_file
 from game.flight.credit import Credit
 from game.flight.flight import Flight
-from game.flight.flight_file import Record
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
-from game.flight.replay import FlightReplay, ReplayedFlight
-from game.scenes.logbook.replay import ReplayScene
+from game.flight.replay import ReplayedFlight
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.missions import MissionsScene
@@ -27,24 +25,19 @@ from game.scenes.play.wind import wind
 from game.scenes.play.words import surroundings
 from game.ui.context import Context
 from game.ui.listing import ListRow
+from tests.game.play.ends import end
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
 from tests.support.missions import fly, pilots
 
 Open = Callable[..., Driver]
-REST = float(PARAMS.pad_top + PARAMS.stand + 0.002)
 pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
 def land(driver: Driver) -> None:
     """Bring the flight to a landing by hand."""
-    scene = play(driver)
-    scene.flown.waiting = False
-    env = scene.flight.env
-    x, y = env.pad[0].tolist()
-    env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
-    while scene.ending.shown < 1:
-        driver.skip()
+    x, y = play(driver).flight.env.pad[0].tolist()
+    end(driver, (x, y + PARAMS.stand + 0.002, 0, 0, 0, 0))
 
 
 def test_every_mission_has_words_and_can_be_begun():
@@ -57,20 +50,12 @@ def test_every_mission_has_words_and_can_be_begun():
         assert mission.gold[1] <= mission.silver[1] <= mission.limits.time
 
 
-def test_a_medal_is_for_little_fuel_and_little_time_together():
-    mission = MISSIONS["brake"]
-    assert mission.medal(*mission.gold) == 3
-    assert mission.medal(mission.gold[0], mission.gold[1] + 0.1) == 2
-    assert mission.medal(mission.silver[0], mission.silver[1]) == 2
-    assert mission.medal(mission.silver[0] + 0.1, 1.0) == 1
-
-
 def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(subtests: pytest.Subtests):
     for mission in MISSIONS.values():
         with subtests.test(name=mission.name):
             env = Flight(0, None, mission=mission.name).env
             for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
-                for steps in range(round(600 * most_fuel) - 90, round(600 * most_fuel) + 91):  # of a jet, a 600th each
+                for steps in range(round(600 * most_fuel) - 40, round(600 * most_fuel) + 41):  # of a jet, a 600th each
                     env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
                     figures = {label: float(value) for label, value, _ in flight_figures(env)}
                     won = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
@@ -78,29 +63,19 @@ def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_muc
                     if env.conditions.tank == np.inf:
                         assert float(flight_readouts(env)["fuel"].figure) == figures[texts.FUEL]
                 env.side_steps[:] = 0
-                for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
+                for steps in range(round(60 * longest) - 4, round(60 * longest) + 5):
                     env.steps[:] = steps
                     figures = {label: float(value) for label, value, _ in flight_figures(env)}
                     assert (mission.medal(0.0, float(env.time[0])) >= medal) == (figures[texts.TIME] <= longest)
 
 
-def recorded(name: str) -> Record:
-    return flight_file.read(ASSETS_DIR / "flights" / f"{name}.json")
+def test_every_mission_has_a_recorded_flight_that_earns_gold():
+    for name in MISSIONS:  # that they earn what they claim is a test of `verify`
+        entry = flight_file.read(ASSETS_DIR / "flights" / f"{name}.json").entry
+        assert (entry.course, entry.outcome, entry.medal) == (name, Outcome.LANDED.name, 3)
 
 
-def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(subtests: pytest.Subtests):
-    for name in MISSIONS:
-        with subtests.test(name=name):
-            flight_replay = FlightReplay(recorded(name))
-            flight_replay.scout(10_000)
-            flight_replay.go_to(flight_replay.reached)
-            env = flight_replay.flight.env
-            assert flight_replay.flight.outcome is Outcome.LANDED
-            assert MISSIONS[name].medal(float(env.fuel[0]), float(env.time[0])) == 3
-            assert flight_replay.record.entry.course == name
-            assert flight_replay.record.entry.medal == 3
-
-
+@pytest.mark.slow
 def test_the_network_lands_where_its_page_says_so():
     flyers = pilots(MODELS_DIR / "lander")
     for mission in MISSIONS.values():
@@ -118,14 +93,13 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     driver = open_game()
     driver.key(pygame.K_RETURN)
     driver.press_on(texts.FLIGHTS["missions"][0])
-    assert driver.top_name == "MissionsScene"
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert play(driver).challenge.name == "brake"
-    assert play(driver).flown.ghost is not None
-    land(driver)
-    assert play(driver).ending.card.score.endswith(f"points{texts.DIAL_JOIN}gold")
-    driver.key(pygame.K_r)
-    assert play(driver).flown.ghost.name == texts.GHOST_BEFORE  # the landing just flown is there to be beaten
+    for ghost in (texts.THE_NETWORK, texts.GHOST_BEFORE):  # the landing just flown is there to be beaten
+        assert play(driver).flown.ghost.name == ghost
+        land(driver)
+        assert play(driver).ending.card.score.endswith(f"points{texts.DIAL_JOIN}gold")
+        driver.key(pygame.K_r)
     land(driver)
     driver.key(pygame.K_RETURN)
     assert play(driver).challenge.name == "aside"  # the next one
@@ -136,7 +110,6 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     assert driver.top.chosen == "aside"
     driver.key(pygame.K_UP)
     assert rows(driver)["brake"][1] == texts.MEDALS[3]
-    assert driver.top.chosen == "brake"
 
 
 def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game: Open):
@@ -148,11 +121,8 @@ def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game:
     driver.frames(3)
     land(driver)
     card = play(driver).ending.card
-    assert (card.score.endswith(texts.MISSION_TOGETHER), card.ring, card.medal) == (
-        True,
-        True,
-        0,
-    )
+    assert card.score.endswith(texts.MISSION_TOGETHER)
+    assert (card.ring, card.medal) == (True, 0)
     driver.key(pygame.K_ESCAPE)
     assert rows(driver)["fall"][1] == texts.MISSION_TOGETHER
 
@@ -200,20 +170,17 @@ def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
 
 
 def test_what_surrounds_a_flight_is_said():
-    def words_of(name: str, seconds: float = 0.0) -> list[str]:
-        flight = Flight(0, None, mission=name)
-        flight.env.steps[:] = round(60 * seconds)
-        return list(surroundings(flight.env))
-
-    assert words_of("fall") == []
-    assert "2.3 times" in words_of("mars")[0]
-    mars = Flight(0, None, mission="mars")
-    mars.env.steps[:] = 75
-    assert wind(mars.env) == pytest.approx(0.1, abs=0.05)
-    assert words_of("outage", 1.0) == ["The main engine fails in 1.0 s"]
-    assert words_of("outage", 3.0) == ["No main engine for 1.0 s"]
-    assert words_of("outage", 5.0) == []
-    assert words_of("ferry")[0].startswith("The pad goes right")
+    for name, seconds, said in (
+        ("fall", 0.0, []), ("outage", 1.0, ["The main engine fails in 1.0 s"]),
+        ("outage", 3.0, ["No main engine for 1.0 s"]), ("outage", 5.0, []),
+    ):  # fmt: skip
+        env = Flight(0, None, mission=name).env
+        env.steps[:] = round(60 * seconds)
+        assert list(surroundings(env)) == said, (name, seconds)
+    mars = Flight(0, None, mission="mars").env
+    assert "2.3 times" in next(iter(surroundings(mars)))
+    mars.steps[:] = 75
+    assert wind(mars) == pytest.approx(0.1, abs=0.05)
 
 
 def test_beside_the_player_flies_the_network_or_a_landing_that_was_recorded(open_game: Open, monkeypatch):
@@ -228,19 +195,13 @@ def test_beside_the_player_flies_the_network_or_a_landing_that_was_recorded(open
 # Flights of one's own
 
 
-@pytest.fixture
-def book(open_game: Open, context: Context) -> Driver:
+def test_a_flight_is_flown_on_from_the_moment_that_is_shown(open_game: Open, context: Context):
     kept(context, scripted(by_hand=30))
-    driver = open_game(LogbookScene)
-    driver.frames(2)
-    return driver
-
-
-def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
+    book = open_game(LogbookScene)
+    book.frames(2)
     book.key(pygame.K_RETURN)
-    book.frames(60)
+    book.frames(40)
     book.key(pygame.K_SPACE)
-    assert isinstance(book.top, ReplayScene)
     flight_replay = book.top.flight_replay
     at, place = flight_replay.at, flight_replay.flight.env.position.copy()
     book.key(pygame.K_TAB)
@@ -252,5 +213,4 @@ def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
     assert len(flight.recording.actions) > at
     assert play(book).flown.ghost.flight.env.steps[0] == flight.env.steps[0]
     land(book)
-    entry = Records(book.app.context.user_dir).entries()[-1]
-    assert not entry.alone
+    assert not Records(book.app.context.user_dir).entries()[-1].alone

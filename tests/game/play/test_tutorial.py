@@ -11,7 +11,6 @@ from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.scene import Push
-from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records
 from game.flight.outcomes import crash_reason
@@ -21,10 +20,12 @@ from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import COPILOT, LESSONS, Tutorial
 from game.ui.context import Context
+from tests.game.play.ends import TOO_FAST, place
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver
 from tests.support.flights import play
 from tests.support.listener import Listener
+from tests.support.player import Player
 
 Open = Callable[..., Driver]
 PILOT = ScriptedPilot()
@@ -47,15 +48,13 @@ SENTENCES = [
     for line in lines
     if line
 ]
-KEYS = {MAIN: pygame.K_UP, LEFT: pygame.K_LEFT, RIGHT: pygame.K_RIGHT}
-BUTTONS = {MAIN: 1, LEFT: 3, RIGHT: 3}
 
 
 class Reader:
     """Does with one device what is written beside the craft, `late` frames after it was read."""
 
     def __init__(self, driver: Driver, device: str, late: int = 0) -> None:
-        self.driver, self.device, self.late = driver, device, late
+        self.driver, self.player, self.device, self.late = driver, Player(driver, device), device, late
         self.held: set[str] = set()
         self.read: list[tuple[str, dict[str, str]]] = []
         self.touch()
@@ -63,9 +62,7 @@ class Reader:
 
     @property
     def challenge(self) -> Tutorial:
-        challenge = play(self.driver).challenge
-        assert isinstance(challenge, Tutorial)
-        return challenge
+        return tutorial(self.driver)
 
     def touch(self) -> None:
         """Let the game know which device is in use."""
@@ -147,59 +144,42 @@ class Reader:
         self.held = wanted
 
     def tell(self, name: str, *, down: bool) -> None:
-        if self.device == "keys":
-            pygame.event.post(pygame.Event(pygame.KEYDOWN if down else pygame.KEYUP, key=KEYS[name], mod=0))
-        elif self.device == "mouse":
-            at = self.driver.to_window((20 if name == LEFT else 1260, 400)) if name != MAIN else pygame.mouse.get_pos()
-            if name != MAIN:
-                pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=at, rel=(0, 0), buttons=(0, 0, 0)))
-            kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
-            pygame.event.post(pygame.Event(kind, pos=at, button=BUTTONS[name]))
-        elif name == MAIN:
-            kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
-            pygame.event.post(pygame.Event(kind, button=pygame.CONTROLLER_BUTTON_A, instance_id=0))
-        else:
-            value = (-32000 if name == LEFT else 32000) if down else 0
-            axis = pygame.CONTROLLER_AXIS_LEFTX
-            pygame.event.post(pygame.Event(pygame.CONTROLLERAXISMOTION, axis=axis, value=value, instance_id=0))
+        if self.device != "mouse":
+            self.player._tell(name, down=down)
+            return
+        at = pygame.mouse.get_pos()
+        if name != MAIN:
+            at = self.driver.to_window((20 if name == LEFT else 1260, 400))
+            pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=at, rel=(0, 0), buttons=(0, 0, 0)))
+        kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
+        pygame.event.post(pygame.Event(kind, pos=at, button=1 if name == MAIN else 3))
 
     def press_hand_over(self) -> None:
-        driver = self.driver
-        if self.device == "keys":
-            driver.key(pygame.K_TAB)
-        elif self.device == "pad":
-            driver.button(pygame.CONTROLLER_BUTTON_Y)
-        else:
-            driver.frames(1)
-            hints = driver.hints()
-            driver.click(hints.get(texts.HINT_HAND_OVER) or hints[texts.HINT_TAKE_BACK])
-
-
-DEVICES = ("keys", "pad", "mouse")
-
-
-def reader(open_game: Open, device: str, late: int = 0) -> Reader:
-    return Reader(open_game(PlayScene, 0, challenge=Tutorial()), device, late)
-
-
-def wait_for_another(driver: Driver) -> None:
-    """Let what flies come to its end, and the next flight begin."""
-    first = play(driver).flight
-    for _ in range(1500):
-        if play(driver).flight is not first:
+        if self.device != "mouse":
+            self.player.press("hand over")
             return
-        driver.skip()
-    raise AssertionError("nothing begins again")
+        self.driver.frames(1)
+        hints = self.driver.hints()
+        self.driver.click(hints.get(texts.HINT_HAND_OVER) or hints[texts.HINT_TAKE_BACK])
+
+
+def at_lesson(open_game: Open, name: str) -> Driver:
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
+    while tutorial(driver).lesson.name != name:
+        driver.key(pygame.K_n)
+    return driver
 
 
 def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(open_game: Open, context: Context):
+    context.sound = sound = Listener()
     driver = open_game(tutored=False)
     driver.key(pygame.K_RETURN)
-    assert list(Reader(driver, "keys").lessons()) == NAMES
+    sound.heard()
+    assert list(Reader(driver, "keys", late=18).lessons()) == NAMES
+    assert sound.heard().count("choose") == len(NAMES) - 1, "a lesson that is done is heard; a landing is anyway"
     scene = play(driver)
     assert scene.flight.outcome is Outcome.LANDED
     driver.frames(90)
-    assert scene.ending.card is not None
     assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
     driver.key(pygame.K_RETURN)
@@ -211,18 +191,11 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(open_ga
     assert settings.widget(texts.TUTORIAL_OPEN)._figure == texts.TUTORIAL_FLOWN
 
 
-def test_only_the_very_first_flight_teaches(open_game: Open):
-    driver = open_game()
-    driver.keys(pygame.K_RETURN, pygame.K_RETURN)
-    assert play(driver).challenge.free
-
-
 def test_a_crash_is_reported_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    driver = open_game(PlayScene, 0, challenge=Tutorial())
-    for _ in range(2):
-        driver.key(pygame.K_n)  # to the fall, and the braking
+    driver = at_lesson(open_game, "brake")
     driver.key(pygame.K_LEFT)
     first = play(driver).flight
+    place(first.env, *TOO_FAST)
     while not first.over:
         driver.skip()
     drawn = Drawn(monkeypatch)
@@ -236,27 +209,24 @@ def test_a_crash_is_reported_once_and_then_beside_the_next_craft(open_game: Open
     assert drawn.words.count(reason) == 1
 
 
-def test_who_rises_while_braking_is_asked_to_let_go(open_game: Open):
-    driver = open_game(PlayScene, 0, challenge=Tutorial())
-    challenge = tutorial(driver)
-    for _ in range(2):
-        driver.key(pygame.K_n)
-    assert challenge.lesson.name == "brake"
-    scene = play(driver)
-    controls = driver.app.context.controls
+def test_who_rises_while_braking_is_asked_to_let_go_and_who_has_tipped_over_to_turn_first(open_game: Open):
+    driver = at_lesson(open_game, "brake")
+    flight, controls = play(driver).flight, driver.app.context.controls
     keys = {"main": controls.word(Held.MAIN)}
-    assert challenge.sentence(scene.flight, controls) == texts.TUTORIAL["brake"][0].format(**keys)
-    scene.flight.env.place(np.ones(1, bool), np.array([[0.0, 12.0, 0.0, 0.5, 0.0, 0.0]]))
-    assert challenge.sentence(scene.flight, controls) == texts.TUTORIAL_RISES.format(**keys)
-
-
-def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
-    context.sound = sound = Listener()
-    lessons = reader(open_game, "keys").lessons()
-    next(lessons)
-    sound.heard()
-    next(lessons)
-    assert sound.heard().count("choose") == 1
+    for up, tilt, wanted in (
+        (-2.0, 0, texts.TUTORIAL["brake"][0].format(**keys)),
+        (0.5, 0, texts.TUTORIAL_RISES.format(**keys)),
+        (-7.0, 61, texts.TUTORIAL_TURN_FIRST.format(other=controls.word(Held.RIGHT))),
+        (-7.0, -138, texts.TUTORIAL_TURN_FIRST.format(other=controls.word(Held.LEFT))),
+        (-7.0, 20, texts.TUTORIAL_TOO_FAST.format(**keys)),
+    ):
+        place(flight.env, 0.0, 12.0, 0.0, up, np.radians(tilt), 0.0)
+        assert tutorial(driver).sentence(flight, controls) == wanted, (up, tilt)
+    for aside, turn in ((-13.0, Held.RIGHT), (13.0, Held.LEFT)):
+        place(flight.env, aside, 12.0, 0.0, -2.0, 0.0, 0.0)
+        assert tutorial(driver).sentence(flight, controls) == texts.TUTORIAL_AWAY.format(
+            inward=controls.word(turn), **keys
+        )
 
 
 def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context):
@@ -275,40 +245,14 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
 
 
 def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes_on(open_game: Open):
-    pupil = reader(open_game, "keys")
-    driver = pupil.driver
-    for name in pupil.lessons():
-        if name == "take_back":
-            break
+    driver = at_lesson(open_game, "hand_over")
+    driver.keys(pygame.K_UP, pygame.K_TAB)
     first = play(driver).flight
-    wait_for_another(driver)  # the network goes on to land
+    while play(driver).flight is first:  # the network goes on to land
+        driver.skip(10)
     assert first.outcome is Outcome.LANDED
     assert tutorial(driver).lesson.name == "land"
     assert play(driver).flight.hand is StickHolder.HUMAN
-
-
-def test_who_has_tipped_over_is_asked_to_turn_before_anything_else(open_game: Open):
-    driver = open_game(PlayScene, 0, challenge=Tutorial())
-    driver.key(pygame.K_UP)
-    flight, controls = play(driver).flight, driver.app.context.controls
-    for tilt, left in ((61, False), (-138, True), (20, None)):
-        flight.env.place(np.ones(1, bool), np.array([[0.0, 6.0, 0.0, -4.0, np.radians(tilt), 0.0]]))
-        words = tutorial(driver).sentence(flight, controls)
-        turn = {True: Held.LEFT, False: Held.RIGHT}.get(left)
-        wanted = texts.TUTORIAL_TURN_FIRST.format(other=controls.word(turn)) if turn else None
-        assert words == (wanted or texts.TUTORIAL_TOO_FAST.format(main=controls.word(Held.MAIN))), tilt
-
-
-def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
-    driver = open_game(MenuScene, tutored=False)
-    driver.key(pygame.K_RETURN)
-    for name in NAMES:
-        if name == "take_back":
-            continue  # who does not hand over has nothing to take back
-        assert tutorial(driver).lesson.name == name
-        driver.key(pygame.K_n)
-    assert play(driver).challenge.free
-    assert saved(driver) == (True, False)  # left out, and not flown
 
 
 def saved(driver: Driver) -> tuple[bool, bool]:
@@ -324,47 +268,39 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     driver.key(pygame.K_RETURN)
     assert tutorial(driver).lesson.name == "fire"
     assert saved(driver) == (False, False)
-    driver.key(pygame.K_UP)
-    driver.key(pygame.K_ESCAPE)
-    assert "PauseScene" in driver.top_name
-    word = next(word for word in driver.form.widgets if word.label == texts.TUTORIAL_LEAVE)
-    driver.form.focus(word)
-    driver.key(pygame.K_RETURN)
+    driver.keys(pygame.K_UP, pygame.K_ESCAPE)
+    driver.press_on(texts.TUTORIAL_LEAVE)
     assert play(driver).challenge.free
     assert saved(driver) == (True, False)
 
 
-def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "it is gone"))
-    pupil = reader(open_game, "keys")
-    assert list(pupil.lessons()) == [name for name in NAMES if name not in ("hand_over", "take_back")]
+def test_without_a_network_nobody_is_asked_to_hand_over():
+    lessons, names = Tutorial(), []
+    lessons.flight(0, None)
+    while not lessons.through:
+        names.append(lessons.lesson.name)
+        lessons.skip()
+    assert names == [name for name in NAMES if name not in ("hand_over", "take_back")]
 
 
 def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
-    driver = open_game(PlayScene, 0, challenge=Tutorial())
-    for _ in range(3):
-        driver.key(pygame.K_n)
-    challenge, controls = tutorial(driver), driver.app.context.controls
-    flight = play(driver).flight
-    assert challenge.lesson.name == "lean"
-    assert challenge.sentence(flight, controls).startswith(
-        f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} "
-    )
+    driver = at_lesson(open_game, "lean")
+    challenge, controls, flight = tutorial(driver), driver.app.context.controls, play(driver).flight
+    left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
+    assert challenge.sentence(flight, controls).startswith(f"{left} or {right} ")
     driver.move((640, 360))
     assert " or " not in challenge.sentence(flight, controls).split(".")[0]
 
 
-@pytest.mark.parametrize(("device", "late"), [("keys", 18), ("pad", 0), ("mouse", 18)])
-def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: str, late: int):
-    pupil = reader(open_game, device, late)
+@pytest.mark.parametrize("device", ["pad", "mouse"])
+def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: str):
+    pupil = Reader(open_game(PlayScene, 0, challenge=Tutorial()), device)
     assert list(pupil.lessons()) == NAMES
     assert play(pupil.driver).flight.outcome is Outcome.LANDED
-    assert pupil.driver.app.context.settings.first_flown
 
 
-@pytest.mark.parametrize("device", DEVICES)
-def test_who_holds_on_to_the_engine_is_warned_lost_shown_why_and_goes_on_by_letting_go(open_game: Open, device: str):
-    pupil = reader(open_game, device)
+def test_who_holds_on_to_the_engine_is_warned_lost_shown_why_and_goes_on_by_letting_go(open_game: Open):
+    pupil = Reader(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     pupil.driver.frames(2)
     pupil.hold({MAIN})
     seen, why = [], ""

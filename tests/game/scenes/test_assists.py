@@ -19,7 +19,7 @@ from game.ui.context import Context
 from game.ui.switch_scan import DWELL, HELD
 from tests.support.driver import Driver
 from tests.support.one_switch import SlowSwitch
-from tests.support.player import DEVICES, Player
+from tests.support.player import Player
 from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
@@ -29,12 +29,11 @@ HANDS = ("analogue", "toggle_thrust", "one_switch")
 ROOM = ("wider_pads", "untimed")
 
 
-@pytest.mark.parametrize("device", DEVICES)
-def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, context: Context, device: str):
+def test_every_assist_is_switched_and_saved(open_game: Open, context: Context):
     save_settings(context)
     before = {name: getattr(context.settings, name) for name in (*HANDS, *ROOM)}
     for group, names in (("flights", ROOM), ("controls", HANDS)):  # the last one makes the keys a switch
-        player = Player(open_game(SettingsScene, group), device)
+        player = Player(open_game(SettingsScene, group), "keys")
         for name in names:
             player.choose(texts.SETTINGS[name][0])
         saved = player.saved()
@@ -95,25 +94,25 @@ def test_wider_pads_chosen_before_the_first_touch_are_there_at_once(open_game: O
 # One switch
 
 
-class Switch:
-    """The one thing the player can press, on one device."""
+PRESSES = {
+    "keys": (pygame.KEYDOWN, pygame.KEYUP, {"key": pygame.K_SPACE, "mod": 0}),
+    "pad": (pygame.CONTROLLERBUTTONDOWN, pygame.CONTROLLERBUTTONUP,
+            {"button": pygame.CONTROLLER_BUTTON_A, "instance_id": 0}),
+    "mouse": (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, {"button": 1, "pos": (640, 600)}),
+}  # fmt: skip
 
-    def __init__(self, game: Driver, device: str) -> None:
+
+class Switch:
+    """The one thing the player can press, on one device or on another."""
+
+    def __init__(self, game: Driver, device: str = "keys") -> None:
         self.game, self.device, self.down = game, device, False
 
     def hold(self, down: bool) -> None:
-        if down == self.down:
-            return
-        self.down = down
-        if self.device == "keys":
-            event = pygame.Event(pygame.KEYDOWN if down else pygame.KEYUP, key=pygame.K_SPACE, mod=0)
-        elif self.device == "pad":
-            kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
-            event = pygame.Event(kind, button=pygame.CONTROLLER_BUTTON_A, instance_id=0)
-        else:
-            kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
-            event = pygame.Event(kind, button=1, pos=self.game.to_window((640, 600)))
-        pygame.event.post(event)
+        if down != self.down:
+            self.down = down
+            *kinds, values = PRESSES[self.device]
+            pygame.event.post(pygame.Event(kinds[not down], values))
 
     def press(self) -> None:
         self.hold(True)
@@ -138,53 +137,59 @@ class Switch:
 
 def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
     """From the menu to a flight, a landing by a slow hand, the card, another start, the pause, and back to the menu."""
-    for device in ("keys", "pad", "mouse"):
-        save_settings(context, one_switch=True)
-        game = open_game(MenuScene)
-        game.frames(5)
-        game.skip(100)
-        switch = Switch(game, device)
-        switch.choose(texts.MENU["play"][0])
-        game.skip(30)
-        switch.choose(texts.FLIGHTS["free"][0])
-        play = game.top
-        assert isinstance(play, PlayScene), device
-        game.skip(5)
-        hand = SlowSwitch()
-        flight = play.flight
-        while not flight.over:
-            switch.hold(hand.held(flight) or (play.waiting and not switch.down))
-            game.skip(1)
-        switch.hold(False)
-        assert flight.outcome is Outcome.LANDED, device
-        game.skip(200)
-        assert texts.ASSIST_WORDS["one_switch"] in play.ending.card.assists
-        switch.choose(texts.CARD_FIRST[True])
-        assert play.flight is not flight
-        play.flight.env.begin_at(0, np.array([0.0, 12.0, 0.0, -4.0, 0.0, 0.0]))
+    save_settings(context, one_switch=True)
+    game = open_game(MenuScene)
+    game.frames(5)
+    game.skip(100)
+    switch = Switch(game, "mouse")
+    switch.choose(texts.MENU["play"][0])
+    game.skip(30)
+    switch.device = "pad"
+    switch.choose(texts.FLIGHTS["free"][0])
+    play = game.top
+    assert isinstance(play, PlayScene)
+    game.skip(5)
+    switch.device = "keys"
+    hand, flight = SlowSwitch(), play.flight
+    while not flight.over:
+        switch.hold(hand.held(flight) or (play.waiting and not switch.down))
+        game.skip(1)
+    switch.hold(False)
+    assert flight.outcome is Outcome.LANDED
+    game.skip(200)
+    assert texts.ASSIST_WORDS["one_switch"] in play.ending.card.assists
+    switch.choose(texts.CARD_FIRST[True])
+    assert play.flight is not flight
+    play.flight.env.begin_at(0, np.array([0.0, 12.0, 0.0, -4.0, 0.0, 0.0]))
+    for device in ("pad", "mouse"):
+        switch.device = device
         switch.hold(True)
-        game.skip(HELD + 10)
-        assert "PauseScene" in game.top_name, device
+        game.skip(10)
+        assert play.flight.env.actions[0] == 3, device
+        if device == "mouse":
+            game.skip(HELD)
         switch.hold(False)
-        game.skip(30)
-        switch.choose(texts.PAUSE_LEAVE)
-        assert game.top_name == "FlightsScene", device
-        game.skip(30)
-        switch.choose(texts.HINT_BACK)
-        assert game.top_name == "MenuScene", device
+        game.skip(3)
+    assert "PauseScene" in game.top_name
+    game.skip(30)
+    switch.choose(texts.PAUSE_LEAVE)
+    assert game.top_name == "FlightsScene"
+    game.skip(30)
+    switch.choose(texts.HINT_BACK)
+    assert game.top_name == "MenuScene"
 
 
 def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: Open, context: Context):
     save_settings(context, one_switch=True, pace=0.9)
     game = open_game(SettingsScene, "flights")
     game.skip(20)
-    switch = Switch(game, "keys")
+    switch = Switch(game)
     for pace in (1.0, 0.2):
         switch.choose(texts.PACE)
         assert context.settings.pace == pytest.approx(pace)
     game = open_game(SettingsScene, "controls")
     game.skip(20)
-    Switch(game, "keys").choose(texts.SETTINGS["one_switch"][0])
+    Switch(game).choose(texts.SETTINGS["one_switch"][0])
     assert not context.settings.one_switch
     game.key(pygame.K_SPACE)  # an ordinary press again
     assert context.settings.one_switch

@@ -2,9 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable
 from dataclasses import fields
-from multiprocessing import active_children
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +13,9 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.filters import FilterMoment
-from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion
 from ai.files import state_folder
 from ai.training.history import DigitPoint, Validation
-from ai.training.run import save
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
@@ -27,16 +23,12 @@ from game.scenes.train.digits import DigitTrainingScene
 from game.training.digit_models import DigitModels
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
-from game.training.run_settings import RunSettings, knob_descriptions
+from game.training.run_settings import knob_descriptions
 from game.ui.charts import Scrubber
+from tests.support import inline_worker
 from tests.support.driver import Driver
-from tests.support.player import Player
 from tests.support.small import DIGITS as SMALL
 from tests.support.written import words_written
-
-
-def wait(driver: Driver, until: Callable[[], object]) -> None:
-    driver.wait(until)
 
 
 @pytest.fixture
@@ -70,36 +62,30 @@ def test_every_setting_has_a_knob_and_a_word():
                 assert network.predict(DigitClassifier(network).shaped(np.zeros((1, 28, 28)))).shape == (1, 10)
 
 
-def test_presets_are_named_and_no_sabotage_is_offered():
-    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, DIGITS)
-    assert run_settings.named == ("classic", "")
-    assert DIGITS.said(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5)))[0] == "Modern"
-
-
 # A run
 
 
-def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
-    scene = beside.top
-    beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.run.confusion and len(scene.run.history))
+def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
+    scene = train.top
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.run.confusion and len(scene.run.history))
     assert scene.run.config == SMALL
     assert scene.run.confusion.table.sum() == 2_000
     assert scene.matrix.confusion is scene.run.confusion
-    beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.run.state is WorkerState.PAUSED)
-    beside.frames(5)
-    beside.click(beside.widget(texts.DIGIT_RUN_STOP).box.center)
-    wait(beside, lambda: not scene.run.alive)
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.run.state is WorkerState.PAUSED)
+    train.frames(5)
+    train.click(train.widget(texts.DIGIT_RUN_STOP).box.center)
+    train.wait(lambda: not scene.run.alive)
     assert scene.run.state is WorkerState.ENDED
     assert not scene.run.problem
     assert 0 < scene.run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    wait(beside, lambda: texts.TRAIN_GO_ON in [each.label for each in scene.form.widgets])
+    train.wait(lambda: texts.TRAIN_GO_ON in [each.label for each in scene.form.widgets])
     stood = scene.run.history["step"][-1]
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
-    beside.click(beside.widget(texts.TRAIN_GO_ON).box.center)
-    wait(beside, lambda: len(scene.run.history) and scene.run.history["step"][-1] > stood)
+    train.click(train.widget(texts.TRAIN_GO_ON).box.center)
+    train.wait(lambda: len(scene.run.history) and scene.run.history["step"][-1] > stood)
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
     assert len(scene.run.earlier) == 1
     scene.run.close()
@@ -115,16 +101,16 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.key(pygame.K_TAB)
     scene.form.focus(scene.start_button)
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(scene.run.history))
+    train.wait(lambda: len(scene.run.history))
     train.click(train.widget(texts.TRAIN_SAVE).box.center)
     assert train.top_name == "NameDialog"
     train.key(pygame.K_RETURN)
     assert train.top is scene
     kept = tmp_path / "user" / "digits" / "runs" / texts.DIGIT_RUN_NAME.format(preset="Classic")
-    wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
+    train.wait(lambda: (kept / "config.json").exists() and len(notes) == 4)
     assert kept.name in notes[-1]
     train.click(train.widget(texts.DIGIT_RUN_STOP).box.center)
-    wait(train, lambda: not scene.run.alive and scene.run.kept)
+    train.wait(lambda: not scene.run.alive and scene.run.kept)
     train.click(train.widget(texts.DIGIT_RUN_DREAM).box.center)
     assert train.top_name == "DreamScene"
     train.key(pygame.K_ESCAPE)
@@ -132,19 +118,10 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     assert train.top_name == "QuizScene"
 
 
-def test_a_nameless_run_is_kept_when_a_new_one_begins(train: Driver, tmp_path: Path):
-    runs = tmp_path / "user" / "digits" / "runs"
-    save(DigitTraining(SMALL, 3), runs / ".training")
-    train.key(pygame.K_RETURN)
-    train.top.run.close()
-    assert train.top.run.runs == 1
-    assert (runs / "run" / "config.json").exists()
-
-
 def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     scene = train.top
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(scene.run.history))
+    train.wait(lambda: len(scene.run.history))
     notes: list[str] = []
     train.app.context.note = notes.append
     assert not train.key(pygame.K_ESCAPE)
@@ -154,23 +131,11 @@ def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     assert notes == [texts.TRAIN_KEPT]
 
 
-def test_a_process_that_dies_is_reported_and_another_can_be_started(beside: Driver):
-    scene = beside.top
-    beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.run.state is WorkerState.RUNNING)
-    for child in active_children():
-        child.kill()
-    wait(beside, lambda: scene.run.state is WorkerState.FAILED)
-    assert "killed" in scene.run.problem
-    beside.frames(20)
-    beside.key(pygame.K_RETURN)
-    assert scene.run.alive
-
-
 # What is kept
 
 
-def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
+def test_a_new_run_puts_the_last_one_aside(tmp_path: Path, monkeypatch):
+    inline_worker.install(monkeypatch.setattr)
     digit_run = TrainingRun(DIGITS, DigitModels(tmp_path))
     digit_run.collection.unsaved.mkdir()
     (digit_run.collection.unsaved / "config.json").write_text("old")
@@ -180,7 +145,8 @@ def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
     assert aside.read_text() == "old"
 
 
-def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path):
+def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path, monkeypatch):
+    inline_worker.install(monkeypatch.setattr)
     digit_run: Any = TrainingRun(DIGITS, DigitModels(tmp_path))
     digit_run.begin(SMALL, 0)
     half = tmp_path / f".{digit_run.collection.unsaved.name}.old"  # between the two renames of a save
@@ -194,37 +160,18 @@ def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_pa
     assert not half.exists()
 
 
-def test_two_games_teach_two_runs(tmp_path: Path):
-    one, other = DigitModels(tmp_path), DigitModels(tmp_path)
-    one.hold()
-    other.hold()
-    assert one.unsaved != other.unsaved
-    one.release()
-    other.release()
-
-
 def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driver, tmp_path: Path):
     digit_run, runs = beside.top.run, tmp_path / "user" / "digits" / "runs"
     beside.key(pygame.K_RETURN)
-    wait(beside, lambda: len(digit_run.history))
+    beside.wait(lambda: len(digit_run.history))
     assert digit_run.save("first") == ""
     digit_run.begin(SMALL, 4)
     assert digit_run.waiting
     with pytest.raises(LibraryError, match=re.escape(texts.TRAIN_NOTHING)):
         digit_run.save("second")
-    wait(beside, lambda: len(digit_run.history))
+    beside.wait(lambda: len(digit_run.history))
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
     assert digit_run.seed == 4
-
-
-@pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])
-def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
-    (tmp_path / "taken").mkdir()
-    digit_run = TrainingRun(DIGITS, DigitModels(tmp_path))
-    digit_run.collection.unsaved.mkdir()
-    with pytest.raises(LibraryError):
-        digit_run.save(name)
-    assert digit_run.collection.unsaved.exists()
 
 
 # The matrix
@@ -277,29 +224,22 @@ def run_with_moments(driver: Driver) -> None:
     driver.frames(30)
 
 
-@pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
-def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, monkeypatch):
+def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, monkeypatch):
     scene, words = beside.top, words_written(monkeypatch)
-    views: Any = beside.choice(texts.DIGIT_RUN_VIEWS[1])
-    if device == "mouse":
-        beside.click(views._places[1].center)
-    else:
-        beside.form.focus(beside.choice(texts.DIGIT_RUN_VIEWS[1]))
-        Player(beside, device).press("right")
+    beside.form.focus(beside.choice(texts.DIGIT_RUN_VIEWS[1]))
+    beside.key(pygame.K_RIGHT)
     beside.frames(2)
     assert texts.DIGIT_RUN_FILTERS_NONE in " ".join(words)
     run_with_moments(beside)
     film = scene.film
     assert film.moment.step == 90
     scrubber = beside.the(Scrubber)
-    if device == "mouse":
-        chart = scene.charts.charts[0]
-        beside.click((chart.place(3.2, 0.5)[0], chart.plot.centery))
-        assert film.moment.step == 30
-    else:
-        beside.form.focus(scrubber)
-        Player(beside, device).press(*["left"] * 6)
-        assert film.moment.step == 30
+    chart = scene.charts.charts[0]
+    beside.click((chart.place(3.2, 0.5)[0], chart.plot.centery))
+    assert film.moment.step == 30
+    beside.form.focus(scrubber)
+    beside.keys(pygame.K_RIGHT, pygame.K_LEFT)
+    assert film.moment.step == 30
     words.clear()
     beside.frames(2)
     said = " ".join(words)
@@ -319,7 +259,7 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
 
 def test_a_live_run_shows_its_filters_and_the_next_run_its_own(train: Driver):
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(train.top.run.filters) > 1)
+    train.wait(lambda: len(train.top.run.filters) > 1)
     train.choice(texts.DIGIT_RUN_VIEWS[1]).choose(1)
     train.frames(3)
     first = train.top.film.moment

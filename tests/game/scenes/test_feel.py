@@ -9,7 +9,6 @@ import pytest
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.flight import networks
-from game.flight.outcomes import crash_reason
 from game.flight.replay import ReplayedFlight
 from game.scenes.play.scene import PlayScene
 from tests.support.driver import Driver
@@ -39,14 +38,14 @@ def place(driver: Driver, start: tuple[float, ...]) -> None:
 def crash(driver: Driver) -> None:
     place(driver, FALL)
     while not scene(driver).flight.over:
-        driver.frames(1)
+        driver.skip(1)
     assert scene(driver).flight.outcome is Outcome.CRASHED
 
 
 def frames_to_card(driver: Driver) -> int:
     frames = 0
     while scene(driver).ending.shown < 1:
-        driver.frames(1)
+        driver.skip(1)
         frames += 1
         assert frames < 300
     return frames
@@ -77,9 +76,8 @@ def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver
         game.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
         game.frames(80)
         game.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
-        game.skip(900)
         flight = scene(game).flight
-        assert flight.over
+        game.wait(lambda flight=flight: flight.over)  # type: ignore[misc]
         again = ReplayedFlight(flight.recording)
         while not again.over:
             again.step(0)
@@ -118,19 +116,7 @@ def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(ga
     assert [key for key in heard if "crash" in key] == ["crash" if reduced else "slow_crash"]
 
 
-def test_the_reason_of_a_crash_is_shown_on_the_spot_before_the_card(game: Driver, written: list[str]):
-    crash(game)
-    written.clear()
-    game.frames(3)
-    assert scene(game).ending.shown == 0
-    assert crash_reason(scene(game).flight.env) in written
-
-
-@pytest.mark.parametrize("reduced", [False, True])
-def test_contact_light_is_announced_when_both_feet_are_down_and_then_no_more(
-    game: Driver, written: list[str], reduced: bool
-):
-    game.app.context.settings.reduced_motion = reduced
+def test_contact_light_is_announced_when_both_feet_are_down_and_then_no_more(game: Driver, written: list[str]):
     game.key(pygame.K_r)
     place(game, REST)
     game.frames(5)
@@ -144,23 +130,13 @@ def test_contact_light_is_announced_when_both_feet_are_down_and_then_no_more(
     assert texts.CONTACT_LIGHT not in written
 
 
-def test_the_camera_comes_near_lingers_and_draws_back_for_the_card(game: Driver):
-    place(game, REST)
-    game.frames(120)
-    near = scene(game).flown.scenery.view(1.0).zoom
-    frames_to_card(game)
-    game.frames(240)
-    assert near > 1.6
-    assert scene(game).flown.scenery.view(1.0).zoom == pytest.approx(1.0, abs=0.02)
-
-
 def test_with_reduced_motion_nothing_zooms_pans_or_shakes(game: Driver):
     game.app.context.settings.reduced_motion = True
     game.key(pygame.K_r)
     still = scene(game).flown.scenery.view(1.5)
     place(game, FALL)
-    for _ in range(150):
-        game.frames(1)
+    for _ in range(80):
+        game.skip(1)
         assert scene(game).flown.scenery.view(1.5, 0.3) == still
 
 
@@ -174,18 +150,6 @@ def test_a_craft_that_waits_high_up_hangs_below_the_words(game: Driver, reduced:
     _, y = scenery.view(1.0).points((3.0, 16.0 + PARAMS.stand))
     assert y > scene(game).flown.clear.head > 104
     assert scenery.view(1.0).centre[0] == 0 or not reduced
-
-
-def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypatch: pytest.MonkeyPatch):
-    place(game, (0.0, PARAMS.pad_top + PARAMS.stand + 0.4, 0.0, -1.6, 0.0, 0.0))
-    game.frames(2)
-    jolts = []
-    stage = scene(game).flown.scenery.stage
-    for _ in range(60):
-        game.frames(1)
-        jolts.append(stage.jolt)
-    assert max(jolts) > 1.0
-    assert sum(jolt > 0 for jolt in jolts) <= 3
 
 
 def test_nothing_is_heard_of_a_craft_that_hangs_and_waits(game: Driver, monkeypatch: pytest.MonkeyPatch):

@@ -1,9 +1,10 @@
-"""Hints tell what is bound: keys that were changed are named, and the old ones are not."""
+"""Hints and actions: what they name, do and sound like; `tests/game/tour` asks each whether all ways run the same."""
 
 import pygame
 import pytest
 
 from ai.lander.missions import FIRST, MISSIONS
+from game.core import texts
 from game.drawing import glyphs, typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
@@ -22,6 +23,30 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     context.settings_file.save(context.settings)
     settings = open_game(SCREENS["SettingsScene"]).top
     assert settings.form.widgets[1]._aside.startswith("F9 ")
+
+
+def test_full_screen_is_switched_by_its_key_and_by_a_click(open_game, context: Context):
+    driver = open_game(SCREENS["MenuScene"])
+    driver.frames(2)
+    action = next(entry for entry in driver.top.actions() if getattr(entry, "key", None) is Command.FULLSCREEN)
+    for switch in (lambda: driver.key(pygame.K_F11), lambda: driver.click(driver.hints()[action.hint])):
+        before = context.settings.full_screen
+        switch()
+        assert context.settings.full_screen is not before
+    assert driver.app.window.full_screen is context.settings.full_screen
+
+
+def test_a_press_and_a_click_on_its_hint_sound_the_same_and_once(open_game, context: Context, monkeypatch):
+    driver = open_game(SCREENS["SettingsScene"])
+    driver.frames(2)
+    driver.key(pygame.K_DOWN)
+    played: list[str] = []
+    monkeypatch.setattr(context.sound, "play", played.append)
+    driver.key(pygame.K_RETURN)
+    by_key, played[:] = list(played), []
+    driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(driver.hints()[texts.HINT_CHANGE]), button=1)
+    assert len(by_key) == 1
+    assert played == by_key
 
 
 def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
@@ -66,13 +91,6 @@ def test_every_sign_is_drawn_and_looks_like_no_other():
             assert abs(surface.get_width() - typeface.reach(sign, 20.0, "regular")) <= 1
             pictures.add(pygame.image.tobytes(surface, "RGBA"))
         assert len(pictures) == len(signs.SIGNS[family])
-
-
-def test_signs_stand_in_sentences():
-    sign = signs.sign("playstation", pygame.CONTROLLER_BUTTON_A)
-    parts = [typeface.reach(part, 15.0, "regular") for part in ("Press ", sign, " to fly")]
-    assert typeface.reach(f"Press {sign} to fly", 15.0, "regular") == pytest.approx(sum(parts), abs=1)
-    assert sign.isprintable() is False  # nobody can type it
 
 
 def test_every_mission_has_an_icon_of_its_own():

@@ -11,7 +11,7 @@ from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.digits import DigitTrainingScene
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
-from tests.support.small import DIGITS
+from tests.support.small import DIGITS, learn, pause
 
 
 @pytest.fixture
@@ -19,15 +19,8 @@ def small_run() -> tuple[type[DigitTrainingScene], object]:
     return DigitTrainingScene, DIGITS
 
 
-def start(driver: Driver) -> None:
-    """Start a run, and wait until it has learnt for a moment."""
-    driver.form.focus(driver.top.start_button)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.run.history))
-
-
 def open_lesson(driver: Driver) -> None:
-    start(driver)
+    learn(driver, 1)
     driver.form.focus(driver.widget(texts.LESSON_WHY))
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: isinstance(driver.top, LessonScene))
@@ -48,32 +41,16 @@ def test_a_word_opens_the_lesson_of_the_first_image_and_the_run_goes_on_afterwar
     assert train.top is scene, "one lesson is opened once"
 
 
-def test_the_mouse_alone_opens_a_lesson_and_goes_to_another_image(train: Driver) -> None:
-    start(train)
-    train.click(train.widget(texts.LESSON_WHY).box.center)
-    train.wait(lambda: isinstance(train.top, LessonScene))
-    train.frames(3)
-    train.click(train.hints()[texts.LESSON_ANOTHER_IMAGE])
-    train.wait(lambda: train.top.lesson.step.row == 1)
-
-
-@pytest.mark.parametrize("gamepad", [False, True])
-def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followed_by_the_first(
-    train: Driver, gamepad: bool
-) -> None:
-    start(train)
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
+def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followed_by_the_first(train: Driver) -> None:
+    learn(train, 1)
+    pause(train)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     train.frames(3)
     first = train.top.lesson
     train.keys(*[pygame.K_RIGHT] * 3)
     for row in range(1, DIGITS.batch_size + 1):
-        if gamepad:
-            train.button(pygame.CONTROLLER_BUTTON_X)
-        else:
-            train.key(pygame.K_r)
+        train.key(pygame.K_r)
         train.wait(lambda row=row: train.top.lesson.step.row == row % DIGITS.batch_size)  # type: ignore[misc]
         lesson = train.top.lesson
         assert train.top.current == 3
@@ -81,13 +58,6 @@ def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followe
         assert (lesson.labels == first.labels).all(), "and so does its batch"
         assert train.top.parts[0].frame.figure == texts.LESSON_LABEL.format(digit=lesson.labels[lesson.step.row])
     assert (train.top.lesson.image == first.image).all()
-
-
-def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
-    train.press_on(texts.LESSON_WHY)
-    train.frames(2)
-    assert isinstance(train.top, DigitTrainingScene)
-    assert train.said == texts.LESSON_NO_RUN
 
 
 def test_a_run_that_has_ended_leaves_the_lesson_as_it_is(train: Driver) -> None:
@@ -99,6 +69,9 @@ def test_a_run_that_has_ended_leaves_the_lesson_as_it_is(train: Driver) -> None:
     train.frames(5)
     assert train.top.lesson is lesson
     assert train.said == texts.LESSON_NO_RUN
+    train.key(pygame.K_ESCAPE)
+    train.press_on(texts.LESSON_WHY)
+    assert train.top is scene
 
 
 def test_a_lesson_without_a_run_offers_no_other_image(open_game: Callable[..., Driver]) -> None:

@@ -9,26 +9,18 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
-from tests.support.small import LANDERS
-
-
-def toggle(driver: Driver) -> None:
-    """Start, pause or resume."""
-    driver.form.focus(driver.top.start_button)
-    driver.key(pygame.K_RETURN)
+from tests.support.small import LANDERS, learn, pause, toggle
 
 
 def start(driver: Driver) -> None:
-    toggle(driver)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
-    toggle(driver)
-    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
+    learn(driver)
+    pause(driver)
     driver.frames(30)
 
 
 def place_of(driver: Driver, slot: int) -> tuple[float, float]:
     """Where a lander stands on the screen."""
-    swarm = driver.top.swarm
+    swarm = driver.top.landers.now
     x, y = next(
         (x, y) for y in range(0, 430, 4) for x in range(0, 830, 4) if swarm.slot_at((x, y)) == slot
     )  # fmt: skip
@@ -36,6 +28,7 @@ def place_of(driver: Driver, slot: int) -> tuple[float, float]:
 
 
 def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
+    """A run that is paused stays so; one that goes on waits for the lesson, and goes on."""
     start(train)
     scene = train.top
     train.press_on(texts.LESSON_WHY)
@@ -48,12 +41,7 @@ def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
     train.frames(5)
     assert train.top is scene, "one lesson is opened once"
     assert scene.run.state is WorkerState.PAUSED
-
-
-def test_a_run_that_goes_on_waits_for_the_lesson_and_goes_on(train: Driver) -> None:
-    start(train)
     toggle(train)
-    scene = train.top
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert scene.run.state is WorkerState.PAUSED
@@ -63,21 +51,18 @@ def test_a_run_that_goes_on_waits_for_the_lesson_and_goes_on(train: Driver) -> N
     train.wait(lambda: scene.run.swarm_state.decisions > stood)
 
 
-def test_a_click_chooses_a_lander_and_another_opens_its_lesson(train: Driver) -> None:
+def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_alone(train: Driver) -> None:
     start(train)
     scene = train.top
     place = place_of(train, 2)
     train.click(place)
-    assert scene.swarm.chosen == 2
+    assert scene.landers.now.chosen == 2
     assert train.top is scene
     train.click(place)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 2
-
-
-def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
-    start(train)
-    scene = train.top
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
     place = place_of(train, 3)
     pointer = next(each for each in scene.form.widgets if isinstance(each, VirtualPointer) and each.box.top < 200)
     scene.form.focus(pointer)
@@ -85,7 +70,7 @@ def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
     assert pointer.typing
     pointer.place.update(place)
     train.key(pygame.K_RETURN)
-    assert scene.swarm.chosen == 3
+    assert scene.landers.now.chosen == 3
     train.key(pygame.K_RETURN)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 3
@@ -94,20 +79,20 @@ def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
 def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train: Driver) -> None:
     toggle(train)
     scene = train.top
-    train.wait(lambda: len(scene.run.history.checkpoints) >= 3)
+    train.wait(lambda: len(scene.run.history.checkpoints) >= 2)
     toggle(train)
     train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     train.frames(30)
     scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.keys(*[pygame.K_LEFT] * 4)
-    moment, now = scene.moment, scene.run.swarm_state.decisions
+    moment, now = scene.rewind.moment, scene.run.swarm_state.decisions
     assert moment is not None
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert abs(train.top.lesson.decisions - moment) < abs(train.top.lesson.decisions - now)
     train.frames(3)
     train.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     train.frames(3)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))

@@ -20,7 +20,7 @@ def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: st
         assert time.monotonic() < end
         time.sleep(0.01)
     env, landings, highest = background.env, 0, 0.0
-    for _ in range(2400):
+    for _ in range(1800):
         over = background.over
         background.update()
         landings += background.over and not over and env.outcome[0] == Outcome.LANDED

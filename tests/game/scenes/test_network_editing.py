@@ -7,22 +7,20 @@ import pytest
 from ai.explain.inspection import links
 from ai.training.edits import NetworkEdits
 from game.core import texts
-from game.core.worker import WorkerState
-from game.scenes.train.editing import NetworkEditing
-from game.scenes.train.picking import Link, Unit
+from game.scenes.train.editing import Link, NetworkEditing, Unit
 from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.networks import on_a_link
+from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
+from tests.support.small import learn, pause
 
 
 def paused(driver: Driver) -> Driver:
     """A run that has begun to learn, paused, with its network large."""
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
+    learn(driver)
+    pause(driver)
     driver.press_on(texts.TRAIN_LOOK[0])
     driver.top.run.ask("undo")  # of nothing: the answer is the network as it is now
     driver.frames(3)
@@ -75,37 +73,8 @@ def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Dri
     assert not {texts.EDIT_UNDO, texts.EDIT_RESTORE, texts.EDIT_LEARN_ON} & set(words(train))
 
 
-def test_a_link_is_cut_and_undone(train: Driver) -> None:
-    before = values(train)
-    train.click(on_a_link(train.top.inside.view))
-    link = editing(train).picked
-    assert isinstance(link, Link)
-    train.frames(2)
-    train.press_on(texts.EDIT_CUT)
-    train.frames(2)
-    assert weight(train, link) == 0
-    assert edits(train).weights == [tuple(link)]
-    assert texts.EDIT_CUT not in words(train), "that is done"
-    train.press_on(texts.EDIT_UNDO)
-    train.frames(2)
-    assert values(train) == before
-    assert not edits(train).holds
-
-
-KEYS = {"confirm": pygame.K_RETURN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT, "back": pygame.K_ESCAPE}
-PAD = {
-    "confirm": pygame.CONTROLLER_BUTTON_A,
-    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT,
-    "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
-    "back": pygame.CONTROLLER_BUTTON_B,
-}
-
-
-@pytest.mark.parametrize("device", ["keys", "pad"])
-def test_a_link_is_picked_and_cut_without_a_mouse(train: Driver, device: str) -> None:
-    def press(name: str) -> None:
-        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
-
+def test_a_link_is_picked_and_cut_without_a_mouse_and_undone(train: Driver) -> None:
+    press = Player(train, "pad").press
     pointer = next(each for each in train.form.widgets if isinstance(each, VirtualPointer) and each.box.height > 300)
     train.form.focus(pointer)
     press("confirm")
@@ -115,15 +84,19 @@ def test_a_link_is_picked_and_cut_without_a_mouse(train: Driver, device: str) ->
     assert isinstance(link, Link)
     press("back")
     train.frames(2)
-    before = weight(train, link)
-    train.form.focus(train.widget(texts.EDIT_CUT))
-    press("confirm")
-    train.frames(3)
-    assert weight(train, link) == 0 != before
-    train.form.focus(train.widget(texts.EDIT_RESTORE))
-    press("confirm")
-    train.frames(3)
-    assert weight(train, link) == before
+    before, whole = weight(train, link), values(train)
+    for way_back in (texts.EDIT_UNDO, texts.EDIT_RESTORE):
+        train.form.focus(train.widget(texts.EDIT_CUT))
+        press("confirm")
+        train.frames(3)
+        assert weight(train, link) == 0 != before
+        assert edits(train).weights == [tuple(link)]
+        assert texts.EDIT_CUT not in words(train), "that is done"
+        train.form.focus(train.widget(way_back))
+        press("confirm")
+        train.frames(3)
+        assert values(train) == whole
+        assert not edits(train).holds
 
 
 def test_it_learns_on_when_it_is_asked_to_and_the_swarm_says_how_it_stands(train: Driver) -> None:
@@ -135,7 +108,7 @@ def test_it_learns_on_when_it_is_asked_to_and_the_swarm_says_how_it_stands(train
     train.frames(3)
     edited = values(train)
     flown = scene.run.swarm_state.decisions
-    train.wait(lambda: scene.run.swarm_state.decisions > flown + 400)
+    train.wait(lambda: scene.run.swarm_state.decisions > flown + 100)
     assert values(train) == edited, "it flies, and does not learn"
     train.key(pygame.K_ESCAPE)
     train.frames(3)

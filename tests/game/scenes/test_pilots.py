@@ -111,7 +111,7 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
 def test_it_is_measured_beside_the_others_and_kept(
     watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str]
 ):
-    monkeypatch.setattr(own, "STARTS", 20)
+    monkeypatch.setattr(own, "STARTS", 10)
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
     path = shelf.Shelf(context.user_dir).new()
     watching.key(pygame.K_o)
@@ -136,7 +136,7 @@ def test_it_is_measured_beside_the_others_and_kept(
     shelf.Shelf(context.user_dir).keep(measured[2])
     watching.top.enter()
     lost = {texts.PILOTS_LOST[number].format(count=count) for number, count in enumerate(measured[2].lost) if count}
-    assert sum(measured[2].lost) == round(20 * (1 - measured[2].landed))
+    assert sum(measured[2].lost) == round(10 * (1 - measured[2].landed))
     written.clear()
     watching.frames(1)
     said = " ".join(written)

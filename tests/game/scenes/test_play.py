@@ -76,7 +76,7 @@ def test_keys_fly(begin: Open):
         assert play(driver).flight.env.actions[0] == 0, keys
 
 
-@pytest.mark.parametrize("first", [MAIN, LEFT, pygame.K_TAB])
+@pytest.mark.parametrize("first", [LEFT, pygame.K_TAB])
 def test_a_flight_waits_for_the_first_touch_even_through_a_pause(begin: Open, first: int):
     driver = begin(Steady())
     driver.frames(30)
@@ -106,12 +106,11 @@ def test_after_a_crash_a_key_flies_the_same_start_again_and_after_a_landing_ente
     for key, start, outcome, same in (
         (pygame.K_RETURN, FALLING, Outcome.CRASHED, True),
         (pygame.K_SPACE, FALLING, Outcome.CRASHED, True),
-        (pygame.K_r, FALLING, Outcome.CRASHED, True),
         (pygame.K_r, STANDING, Outcome.LANDED, True),
         (pygame.K_RETURN, STANDING, Outcome.LANDED, False),
     ):
         start_at(driver, *start)
-        driver.frames(140)
+        driver.skip(140)
         assert play(driver).flight.outcome is outcome
         driver.key(key)
         assert not play(driver).flight.over
@@ -151,23 +150,12 @@ def test_pause_by_key_and_by_looking_away_but_not_by_a_glance_keeps_the_flight(b
     assert play(driver).flight is not flight
 
 
-def cut_short(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[:100])
-
-
-def one_nan(path: Path) -> None:
-    weights = np.load(path)
-    weights.flat[-1] = np.nan
-    np.save(path, weights)
-
-
-@pytest.mark.parametrize("damage", [cut_short, one_nan])
-def test_a_damaged_network_is_named_and_the_game_goes_on(
-    open_game: Open, context: Context, tmp_path: Path, damage: Callable[[Path], None]
-):
+def test_a_damaged_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
     shutil.copytree(MODELS_DIR / "lander" / "modern", tmp_path / "lander" / "modern")
     for path in (tmp_path / "lander" / "modern").rglob("*weights.npy"):
-        damage(path)
+        weights = np.load(path)
+        weights.flat[-1] = np.nan
+        np.save(path, weights)
     context.models_dir = tmp_path
     driver = open_game(PlayScene, seed=1)
     driver.key(pygame.K_TAB)
@@ -206,7 +194,7 @@ def files(context) -> dict[str, bytes]:
 def crash(driver: Driver) -> None:
     start_at(driver, 8.0, 2.2, 0.0, -3.0, 0.0, 0.0)
     while play(driver).ending.card is None:
-        driver.frames(1)
+        driver.skip(1)
 
 
 @pytest.mark.parametrize("hand", [StickHolder.HUMAN, StickHolder.NETWORK])

@@ -14,14 +14,13 @@ from game.core.settings import Settings
 from game.flight.days import Attempt, Days
 from game.flight.logbook import Records
 from game.flight.progress import Progress
-from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed
-from tests.support.player import DEVICES, Player
+from tests.support.player import Player
 from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
@@ -41,12 +40,11 @@ def files(context: Context) -> dict[str, bytes]:
     }
 
 
-@pytest.mark.parametrize("device", DEVICES)
-def test_progress_is_put_away_after_a_question_and_brought_back(open_game: Open, context: Context, device: str):
+def test_progress_is_put_away_after_a_question_and_brought_back(open_game: Open, context: Context):
     save_settings(context, learnt={"neuron": 3}, chapter="plane", wider_pads=True)
     fly(context)
     before = files(context)
-    player = Player(open_game(SettingsScene, "flights"), device)
+    player = Player(open_game(SettingsScene, "flights"), "pad")
     player.choose(texts.PROGRESS_RESET)
     assert player.top_name == "QuestionDialog"
     assert texts.PROGRESS_FLIGHTS.format(count=2) in player.top.more
@@ -100,14 +98,6 @@ def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
     }
 
 
-def test_nothing_flown_is_nothing_lost(context: Context):
-    progress = Progress(context.user_dir, context.settings)
-    assert (progress.figures.flights, progress.restorable) == (0, False)
-    progress.reset()
-    progress.restore()
-    assert files(context) == {}
-
-
 def test_a_disk_that_refuses_keeps_everything_where_it_is(context: Context, monkeypatch: pytest.MonkeyPatch):
     context.settings.learnt = {"neuron": 3}
     fly(context)
@@ -135,7 +125,7 @@ def test_one_volume_turns_all_others_down_and_mute_turns_all_off():
         assert set(sound.gains.values()) == {0.0} or not settings.muted
 
 
-@pytest.mark.parametrize("scene", [MenuScene, SettingsScene, lambda context: PlayScene(context, 3)])
+@pytest.mark.parametrize("scene", [SettingsScene, lambda context: PlayScene(context, 3)])
 def test_a_key_mutes_everywhere_and_says_so(open_game: Open, context: Context, scene):
     save_settings(context)
     game = open_game(scene)

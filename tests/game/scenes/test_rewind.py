@@ -15,17 +15,17 @@ from game.scenes.train.base import CHARTS, INSIDE
 from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
+from tests.support.player import Player
+from tests.support.small import learn, pause
 
-POINTS = 8
+POINTS = 5
 
 
 @pytest.fixture
 def train(train: Driver) -> Driver:
     """A run that has learnt for a while, and is paused."""
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: len(train.top.run.history) >= POINTS)
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
+    learn(train, POINTS)
+    pause(train)
     train.top.open(CHARTS)
     train.frames(14)
     return train
@@ -42,16 +42,12 @@ def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
     return shown.place(seconds / 2, 0.0)[0], shown.plot.centery
 
 
-def scrubber(driver: Driver) -> Scrubber:
-    return driver.the(Scrubber)
-
-
 def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     scene = driver.top
     run, history = scene.run, scene.run.history
-    assert scene.moment == moment
+    assert scene.rewind.moment == moment
     # Everything is one of the messages of the run, the nearest that was kept.
-    assert scene.past_swarm.swarm_state is scene.rewind.swarm_state is run.swarms.nearest(moment)
+    assert scene.landers.past.swarm_state is scene.rewind.swarm_state is run.swarms.nearest(moment)
     assert scene.rewind.swarm_state.decisions == moment
     assert scene.rewind.network_state is run.networks.nearest(moment)
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
@@ -64,12 +60,11 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     assert scene.charts.charts[0].marker == pytest.approx(seconds)
 
 
-@pytest.mark.parametrize("chart", [0, 3])
-def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver, chart: int) -> None:
+def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver) -> None:
     scene = train.top
-    train.click(halfway(train, chart))
+    train.click(halfway(train, 3))
     train.frames(2)
-    moment = scene.moment
+    moment = scene.rewind.moment
     assert moment is not None
     assert 0.2 < moment / scene.run.history["decisions"][-1] < 0.8
     assert_all_of_it_is_at(train, moment)
@@ -77,84 +72,76 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     train.press_on(texts.TRAIN_RESUME)
     train.wait(lambda: len(scene.run.history) > points + 3)
     assert scene.run.state is WorkerState.RUNNING
-    assert scene.moment == moment
+    assert scene.rewind.moment == moment
     assert_all_of_it_is_at(train, moment)
 
 
-def test_a_drag_stays_with_its_chart_and_ends_at_now(train: Driver) -> None:
+def test_a_drag_stays_with_its_chart_and_a_word_or_its_end_leads_to_now(train: Driver) -> None:
     scene = train.top
     x, y = halfway(train, 2)
     train.move((x, y))
     train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
-    first = scene.moment
+    first = scene.rewind.moment
     train.move((x - 20, y - 120))
-    assert scene.moment is not None
+    assert scene.rewind.moment is not None
     assert first is not None
-    assert scene.moment < first
+    assert scene.rewind.moment < first
     train.move((x + 600, y))
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y)), button=1)
+    train.click(halfway(train))
+    train.frames(2)
+    train.click(train.widget(texts.REWIND_NOW).box.center)
+    assert scene.rewind.moment is None
+    assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
 
 
-def keys(driver: Driver) -> dict[str, Callable[[], object]]:
-    return {
-        "left": lambda: driver.key(pygame.K_LEFT),
-        "right": lambda: driver.key(pygame.K_RIGHT),
-        "back": lambda: driver.key(pygame.K_ESCAPE),
-    }
-
-
-def gamepad(driver: Driver) -> dict[str, Callable[[], object]]:
-    return {
-        "left": lambda: driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT),
-        "right": lambda: driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT),
-        "back": lambda: driver.button(pygame.CONTROLLER_BUTTON_B),
-    }
-
-
-@pytest.mark.parametrize("device", [keys, gamepad])
 @pytest.mark.parametrize("large", [False, True])
-def test_left_and_right_step_through_the_run_and_back_leads_to_now(
-    train: Driver, device: Callable[[Driver], dict[str, Callable[[], object]]], large: bool
-) -> None:
-    scene, press = train.top, device(train)
+def test_left_and_right_step_through_the_run_and_back_leads_to_now(train: Driver, large: bool) -> None:
+    """Beside the charts by keys, and beside the large network by a gamepad."""
+    scene, player = train.top, Player(train, "pad" if large else "keys")
     if large:
         train.press_on(texts.TRAIN_LOOK[0])
         train.frames(1)
-    train.form.focus(timeline(train) if large else scrubber(train))
+    train.form.focus(timeline(train) if large else train.the(Scrubber))
     moments = []
     for _ in range(4):
-        press["left"]()
-        moments.append(scene.moment)
+        player.press("left")
+        moments.append(scene.rewind.moment)
     assert None not in moments
     assert sorted(set(moments), reverse=True) == moments
     assert_all_of_it_is_at(train, moments[-1])
-    press["right"]()
-    assert scene.moment == moments[-2]
+    player.press("right")
+    assert scene.rewind.moment == moments[-2]
     if large:
-        press["back"]()
+        player.press("back")
         train.frames(1)
         assert not scene.inside.opened
-        assert scene.moment == moments[-2]
-    press["back"]()
+        assert scene.rewind.moment == moments[-2]
+    player.press("back")
     train.frames(2)
     assert train.top is scene
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     assert np.array_equal(scene.inside.network.values, scene.run.network_state.values)
     assert scene.charts.charts[0].marker is None
 
 
-def test_the_word_leads_back_to_now_and_goes_away(train: Driver) -> None:
+def test_the_charts_are_zoomed_and_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
     scene = train.top
-    train.click(halfway(train))
-    train.frames(2)
-    train.click(train.widget(texts.REWIND_NOW).box.center)
-    assert scene.moment is None
-    assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
-
-
-def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
-    scene = train.top
+    zoom = scene.charts.zoom
+    train.move(halfway(train))
+    train.post(pygame.MOUSEWHEEL, x=0, y=2)
+    assert zoom.factor > 1
+    train.frames(30)
+    for chart in scene.charts.charts:
+        assert chart.x_range[1] - chart.x_range[0] < zoom.end
+    train.form.focus(train.the(Scrubber))
+    train.key(pygame.K_0)
+    assert zoom.factor == 1
+    train.key(pygame.K_PLUS)
+    assert zoom.factor > 1
+    train.key(pygame.K_MINUS)
+    assert zoom.factor == 1
     train.press_on(texts.TRAIN_LOOK[0])
     train.frames(1)
     left, right = timeline(train)._track
@@ -163,7 +150,7 @@ def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
     train.frames(2)
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
     train.click((right, timeline(train).box.centery))
-    assert scene.moment is None
+    assert scene.rewind.moment is None
 
 
 def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: Driver) -> None:
@@ -172,12 +159,12 @@ def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: D
     train.frames(5)
     train.click(halfway(train))
     train.frames(2)
-    assert scene.moment is not None
-    assert_all_of_it_is_at(train, scene.moment)
+    assert scene.rewind.moment is not None
+    assert_all_of_it_is_at(train, scene.rewind.moment)
     assert texts.REWIND_AT.split("{")[0] in scene.rewind.words
     train.press_on(texts.TRAIN_START)
     train.frames(2)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     assert scene.run.swarms.moments[-1] < ended
 
 
@@ -190,12 +177,12 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     driver.frames(2)
     driver.press_on(texts.TRAIN_GO_ON)
     scene = driver.top
-    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 500)
+    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 100)
     driver.frames(14)
     scene.rewind.go_to(decisions / 2)
     driver.frames(2)
-    assert scene.rewind.swarm_state is scene.past_swarm.swarm_state is None
-    checkpoint = scene.run.history.checkpoint_at(scene.moment)
+    assert scene.rewind.swarm_state is scene.landers.past.swarm_state is None
+    checkpoint = scene.run.history.checkpoint_at(scene.rewind.moment)
     assert np.array_equal(scene.inside.network.values, checkpoint.values)
     began = scene.run.swarms.begins
     assert began is not None
@@ -208,12 +195,12 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     driver.frames(2)
     scene = driver.top
     driver.click((200, 540))
-    driver.form.focus(scrubber(driver))
+    driver.form.focus(driver.the(Scrubber))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
     scene.rewind.go_to(100)
     scene.rewind.go_to_share(0.5)
-    assert scene.moment is None
+    assert scene.rewind.moment is None
 
 
 @pytest.mark.parametrize("values", [np.zeros(0, np.float32), np.zeros(7, np.float32), None])
@@ -232,30 +219,12 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     driver.frames(14)
     driver.top.rewind.go_to(10.0)
     driver.frames(14)
-    assert driver.top.moment == 300
+    assert driver.top.rewind.moment == 300
     assert driver.top.rewind.swarm_state is None
     assert driver.top.inside.network is None or driver.top.inside.shown is None
     driver.top.open(INSIDE)
     driver.frames(3)
     driver.form.focus(timeline(driver))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
-    assert driver.top.moment is None
+    assert driver.top.rewind.moment is None
     assert isinstance(driver.top, TrainScene)
-
-
-def test_the_charts_are_zoomed_by_wheel_and_keys(train: Driver) -> None:
-    scene = train.top
-    zoom = scene.charts.zoom
-    train.move(halfway(train))
-    train.post(pygame.MOUSEWHEEL, x=0, y=2)
-    assert zoom.factor > 1
-    train.frames(30)
-    for chart in scene.charts.charts:
-        assert chart.x_range[1] - chart.x_range[0] < zoom.end
-    train.form.focus(scrubber(train))
-    train.key(pygame.K_0)
-    assert zoom.factor == 1
-    train.key(pygame.K_PLUS)
-    assert zoom.factor > 1
-    train.key(pygame.K_MINUS)
-    assert zoom.factor == 1

@@ -20,6 +20,7 @@ from game.ui.context import Context
 from game.ui.entry import EntryRow
 from game.ui.listing import ListRow
 from tests.support.driver import Driver
+from tests.support.player import Player
 
 Open = Callable[..., Driver]
 DESCRIBED = {
@@ -31,14 +32,7 @@ DESCRIBED = {
     "seconds": 61.5,
     "best": {"success": 0.75},
 }
-UP, DOWN, LEFT, RIGHT, ENTER, ESCAPE = (
-    pygame.K_UP,
-    pygame.K_DOWN,
-    pygame.K_LEFT,
-    pygame.K_RIGHT,
-    pygame.K_RETURN,
-    pygame.K_ESCAPE,
-)
+UP, DOWN, RIGHT, ENTER, ESCAPE = pygame.K_UP, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_RETURN, pygame.K_ESCAPE
 
 
 @pytest.fixture
@@ -121,12 +115,6 @@ def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Lib
     assert verbs(driver) == [texts.RUN_WATCH, texts.RUN_FLY]
 
 
-def test_without_runs_a_sentence_says_how_to_make_one(open_runs):
-    driver = open_runs()
-    assert scene(driver).line == texts.RUNS_NONE
-    assert shown(driver) == "modern"
-
-
 def test_without_any_network_the_screen_still_stands(open_runs, context: Context, tmp_path: Path):
     context.models_dir = tmp_path / "nothing"
     driver = open_runs()
@@ -136,15 +124,16 @@ def test_without_any_network_the_screen_still_stands(open_runs, context: Context
     assert driver.top_name == "MenuScene"
 
 
-def test_the_keyboard_renames(open_runs, three: Library):
+def test_the_keyboard_renames_what_flies_on(open_runs, three: Library, context: Context):
     driver = open_runs()
+    context.settings.model = "b"
     driver.keys(DOWN, ENTER, DOWN, DOWN, DOWN)
     assert scene(driver).form.focused.label == texts.RUN_RENAME
     driver.key(ENTER)
     type_text(driver, "moon / walker?")
     driver.key(ENTER)
     assert sorted(run.name for run in three.runs()) == ["a", "c", "moon  walker"]
-    assert shown(driver) == "moon  walker"
+    assert shown(driver) == context.settings.model == "moon  walker"
 
 
 def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: Library):
@@ -153,26 +142,20 @@ def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: 
     type_text(driver, "B")
     driver.key(ENTER)
     assert "already" in driver.said
-    assert scene(driver).form.typing
+    assert driver.form.typing
     type_text(driver, "B2")
     driver.key(ENTER)
     assert sorted(run.name for run in three.runs()) == ["B2", "b", "c"]
 
 
-@pytest.mark.parametrize("way", ["escape", "word", "another row"])
-def test_a_name_can_be_left_as_it_was(open_runs, three: Library, way: str):
+def test_a_name_can_be_left_as_it_was(open_runs, three: Library):
     driver = open_runs()
-    driver.key(pygame.K_F2)
-    type_text(driver, "other")
-    match way:
-        case "escape":
-            driver.key(ESCAPE)
-        case "word":
-            click(driver, texts.RUN_LEAVE_NAME)
-        case _:
-            click_row(driver, 2)
-    assert not naming(driver)
-    assert sorted(run.name for run in three.runs()) == ["a", "b", "c"]
+    for leave in (lambda: driver.key(ESCAPE), lambda: click(driver, texts.NAMING_LEAVE)):
+        driver.key(pygame.K_F2)
+        type_text(driver, "other")
+        leave()
+        assert not naming(driver)
+        assert sorted(run.name for run in three.runs()) == ["a", "b", "c"]
     driver.key(ESCAPE)
     assert driver.top_name == "MenuScene"
 
@@ -183,35 +166,16 @@ def test_the_mouse_accepts_a_name_and_letters_are_no_commands_meanwhile(open_run
     click(driver, texts.RUN_RENAME)
     driver.keys(pygame.K_DELETE, pygame.K_n, pygame.K_SPACE)  # Delete clears the line, and nothing more
     type_text(driver, "new one")
-    click(driver, texts.RUN_KEEP_NAME)
+    click(driver, texts.NAMING_KEEP)
     assert sorted(run.name for run in three.runs()) == ["a", "c", "new one"]
 
 
 def test_a_gamepad_renames_with_a_name_made_of_the_figures(open_runs, three: Library):
-    driver = open_runs()
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    for _ in range(3):
-        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    driver.frames(2)
-    driver.button(pygame.CONTROLLER_BUTTON_A)
+    player = Player(open_runs(), "pad")
+    player.press("confirm", "down", "down", "down", "confirm")
+    player.frames(2)
+    player.press("confirm")
     assert sorted(run.name for run in three.runs()) == ["b", "c", "modern 5k 75.0"]
-
-
-def test_a_gamepad_deletes_brings_back_and_leaves(open_runs, three: Library):
-    driver = open_runs()
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    for _ in range(5):
-        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert [run.name for run in three.runs()] == ["b", "c"]
-    for _ in range(3):
-        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    assert scene(driver).form.focused.label == texts.RUN_RESTORE.format(name="a")
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert [run.name for run in three.runs()] == ["a", "b", "c"]
-    driver.button(pygame.CONTROLLER_BUTTON_B)
-    assert driver.top_name == "MenuScene"
 
 
 def test_the_mouse_deletes_and_brings_back(open_runs, three: Library):
@@ -226,17 +190,13 @@ def test_the_mouse_deletes_and_brings_back(open_runs, three: Library):
 
 
 def test_the_games_own_networks_are_not_to_be_changed(open_runs, context: Context, three: Library):
+    """Deleting all there is leaves a screen that works, and a sentence that says how to make a run."""
     driver = open_runs()
-    driver.keys(DOWN, DOWN, DOWN, pygame.K_DELETE, pygame.K_F2)
+    driver.keys(*[pygame.K_DELETE] * 5, pygame.K_F2)
+    assert three.runs() == []
     assert not naming(driver)
     assert (context.models_dir / "lander" / "modern").is_dir()
-
-
-def test_deleting_all_there_is_leaves_a_screen_that_works(open_runs, three: Library):
-    driver = open_runs()
-    driver.keys(*[pygame.K_DELETE] * 5)
-    assert three.runs() == []
-    assert scene(driver).line == texts.RUNS_NONE
+    assert (shown(driver), scene(driver).line) == ("modern", texts.RUNS_NONE)
 
 
 def test_export_says_where_to(open_runs, three: Library, tmp_path: Path):
@@ -262,7 +222,11 @@ def test_a_damaged_run_is_shown_with_its_problem(open_runs, three: Library):
     driver = open_runs()
     assert scene(driver).chosen.problem == "config.json is missing"
     assert verbs(driver) == [texts.RUN_RENAME, texts.RUN_EXPORT, texts.RUN_DELETE]
-    driver.frames(3)
+    chosen: list[str] = []
+    driver = open_runs(choose=chosen.append)
+    driver.keys(pygame.K_HOME, ENTER)
+    assert not chosen, "it cannot fly"
+    assert driver.top_name == "NetworksScene"
 
 
 def test_watch_and_fly_with_the_chosen_one_and_come_back_to_it(open_runs, three: Library, context: Context):
@@ -277,62 +241,33 @@ def test_watch_and_fly_with_the_chosen_one_and_come_back_to_it(open_runs, three:
         assert shown(driver) == "b"
 
 
-def test_a_new_name_is_still_the_one_that_flies(open_runs, three: Library, context: Context):
-    driver = open_runs()
-    context.settings.model = "a"
-    driver.key(pygame.K_F2)
-    type_text(driver, "z")
-    driver.key(ENTER)
-    assert context.settings.model == "z"
-
-
-def test_go_on_training_opens_a_training_of_that_folder(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
+def test_go_on_training_opens_a_training_of_that_folder_or_what_the_opener_wants(
+    open_runs, three: Library, monkeypatch: pytest.MonkeyPatch
+):
     asked: list[Path] = []
     stand_in = SimpleNamespace(TrainScene=lambda context, resume: (asked.append(resume), MenuScene(context))[1])
     monkeypatch.setitem(sys.modules, "game.scenes.train.scene", stand_in)
     driver = open_runs()
     click(driver, texts.RUN_TRAIN)
-    assert asked == [three.folder / "a"]
-    assert driver.top_name == "MenuScene"
-
-
-def test_who_opens_the_screen_may_train_in_a_way_of_their_own(open_runs, three: Library):
-    asked: list[Path] = []
     driver = open_runs(train=lambda folder: (asked.append(folder), Pop())[1])
     click(driver, texts.RUN_TRAIN)
-    assert asked == [three.folder / "a"]
+    assert asked == [three.folder / "a"] * 2
     assert driver.top_name == "MenuScene"
 
 
-@pytest.mark.parametrize("way", ["enter", "word", "pad", "second click"])
+@pytest.mark.parametrize("way", ["enter", "word", "second click"])
 def test_choosing_hands_the_name_back_and_closes(open_runs, three: Library, way: str):
     chosen: list[str] = []
     driver = open_runs(choose=chosen.append)
     assert shown(driver) == "modern"  # the one that flies now
     driver.key(pygame.K_HOME)
-    match way:
-        case "enter":
-            driver.keys(DOWN, ENTER)
-        case "word":
-            click_row(driver, 1)
-            click(driver, texts.RUN_CHOOSE)
-        case "pad":
-            driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-            driver.button(pygame.CONTROLLER_BUTTON_A)
-        case _:
-            click_row(driver, 1)
-            click_row(driver, 1)
+    if way == "enter":
+        driver.keys(DOWN, ENTER)
+    else:
+        click_row(driver, 1)
+        click(driver, texts.RUN_CHOOSE) if way == "word" else click_row(driver, 1)
     assert chosen == ["b"]
     assert driver.top_name == "MenuScene"
-
-
-def test_what_cannot_fly_cannot_be_chosen(open_runs, three: Library):
-    (three.folder / "a" / "config.json").unlink()
-    chosen: list[str] = []
-    driver = open_runs(choose=chosen.append)
-    driver.keys(pygame.K_HOME, ENTER)
-    assert not chosen
-    assert driver.top_name == "NetworksScene"
 
 
 def test_a_folder_that_is_dropped_is_copied_in(open_runs, three: Library, tmp_path: Path):
@@ -342,15 +277,3 @@ def test_a_folder_that_is_dropped_is_copied_in(open_runs, three: Library, tmp_pa
     assert shown(driver) == "from a friend"
     driver.post(pygame.DROPFILE, file=str(tmp_path))
     assert "no folder with a network" in driver.said
-
-
-def test_many_runs_scroll(open_runs, library: Library):
-    for number in range(30):
-        write(library.folder / f"run {number}")
-    driver = open_runs()
-    driver.key(pygame.K_END)
-    assert shown(driver) == "modern"
-    driver.key(pygame.K_PAGEUP)
-    driver.post(pygame.MOUSEWHEEL, x=0, y=3, flipped=False)
-    driver.frames(3)
-    assert len(scene(driver).items) == 31

@@ -67,18 +67,14 @@ def test_a_trial_that_was_stopped_early_offers_nothing_to_fly(open_game, written
     assert driver.top_name == "StudyScene"
 
 
-def test_a_study_that_cannot_be_read_says_so(open_game, context, written):
+def test_a_study_that_cannot_be_read_says_so_and_without_any_what_makes_one(open_game, context, written):
+    open_game(StudyScene).frames(3)
+    assert texts.STUDY_NONE in written
     made(context)
     driver = open_game(StudyScene, context.user_dir / "studies" / "b")
     driver.frames(3)
     assert texts.STUDY_UNREADABLE in written
     assert driver.top.items == []
-
-
-def test_without_a_study_the_scene_says_what_makes_one(open_game, written):
-    driver = open_game(StudyScene)
-    driver.frames(3)
-    assert texts.STUDY_NONE in written
 
 
 def test_the_best_run_of_a_study_is_among_the_players_networks(open_game, context):

@@ -8,40 +8,30 @@ from dataclasses import replace
 from multiprocessing import active_children
 from pathlib import Path
 
-import numpy as np
 import pygame
 import pytest
 
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
-from ai.training.demonstrations import demonstrate, write
+from ai.training.demonstrations import write
 from ai.training.history import History
 from ai.training.lander_session import TAUGHT
-from ai.training.loop import Training
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.explain.network_view import NetworkView
 from game.flight.demonstrations import FILE_NAME
-from game.scenes.train.inside import SHOWN
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
-from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
-from game.ui.rows import ChoiceRow
-from game.ui.widget import Widget
+from tests.support.demonstrated import demonstrate
 from tests.support.driver import Driver
+from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
-
-KNOB_PAGE = texts.KNOB_PAGES["learning"]  # one of the pages of knobs
-
-
-def start(driver: Driver) -> None:
-    driver.press_on(texts.TRAIN_START)
-    driver.wait(lambda: len(driver.top.run.history) >= 2)
+from tests.support.small import learn
 
 
 def save_as(driver: Driver, name: str) -> None:
@@ -51,17 +41,17 @@ def save_as(driver: Driver, name: str) -> None:
 
 
 def test_start_pause_step_and_go_on(beside: Driver) -> None:
-    start(beside)
+    learn(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
-    assert len(scene.swarm.swarm_state.outcome) == 4
+    assert len(scene.landers.now.swarm_state.outcome) == 4
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(20)
-    time.sleep(0.2)
+    time.sleep(0.1)
     beside.frames(5)
     stood = scene.run.swarm_state.decisions
-    time.sleep(0.3)
+    time.sleep(0.15)
     beside.frames(5)
     assert scene.run.swarm_state.decisions == stood
     beside.key(pygame.K_PERIOD)
@@ -71,38 +61,11 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     beside.wait(lambda: scene.run.swarm_state.decisions > stood + 8)
 
 
-@pytest.mark.slow
-def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
-    beside.unseen = True
-    start(beside)
-    scene = beside.top
-    beside.wait(lambda: len(scene.run.history.checkpoints) >= 2)
-    checkpoint = scene.run.history.checkpoints[1]
-    training = Training(SMALL, 3)
-    while training.agent.decisions < checkpoint.decisions:
-        training.advance()
-    assert np.array_equal(training.agent.network.values, checkpoint.values)
-
-
-def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
-    start(train)
-    scene = train.top
-    train.press_on(texts.TRAIN_SAVE)
-    assert train.top_name == "NameDialog"
-    train.key(pygame.K_RETURN)
-    assert train.top is scene
-    library = Library(tmp_path / "user")
-    train.wait(library.runs)
-    (run,) = library.runs()
-    assert not run.problem
-    assert run.seed == 3
-
-
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
     train: Driver, open_game: Callable[..., Driver]
 ) -> None:
     train.top.knobs.set_config(PRESETS["classic"].changed(hidden=(8,)), 3)
-    start(train)
+    learn(train)
     assert train.top.run.name == "Classic 1"
     decisions = train.top.run.history["decisions"][-1]
     train.app.close()
@@ -121,20 +84,20 @@ def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
 def test_start_keeps_what_was_left_if_it_lands_and_puts_anything_else_where_it_can_be_brought_back(
     train: Driver, open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, share: float | None
 ) -> None:
-    start(train)
+    learn(train)
     train.app.close()
     claim = Library.claim
     monkeypatch.setattr(Library, "claim", lambda library: (left := claim(library)) and replace(left, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
     library = driver.top.library
-    start(driver)
+    learn(driver)
     assert len(library.runs()) == (share is not None)
     assert bool(library.last_deleted) == (share is None)
 
 
 def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     scene.knobs.turn("n_step", 3)
     train.frames(2)
@@ -146,7 +109,7 @@ def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver)
 
 
 def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     save_as(train, "mine")
     train.wait(scene.library.runs)
@@ -159,7 +122,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
 
 
 def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     (scene.library.folder / "mine").mkdir()
     train.press_on(texts.TRAIN_SAVE)
@@ -194,19 +157,8 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     assert sum(each.name == TAUGHT for each in History.read(run.folder).setting_changes) == 1
 
 
-def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
-    start(train)
-    scene = train.top
-    scene.knobs.turn("discount", 0.9)
-    train.wait(lambda: scene.run.config.discount == 0.9)
-    assert scene.run.history.setting_changes[-1].name == "discount"
-    scene.knobs.turn("n_step", 3)
-    assert scene.knobs.settings.waiting == ["n_step"]
-    assert scene.run.config.n_step == SMALL.n_step
-
-
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
-    start(train)
+    learn(train)
     scene = train.top
     scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.key(pygame.K_LEFT)
@@ -220,73 +172,8 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     train.wait(lambda: scene.run.state is WorkerState.RUNNING)
 
 
-def test_the_network_is_looked_into_and_left(train: Driver) -> None:
-    start(train)
-    scene = train.top
-    train.wait(lambda: scene.run.network_state is not None)
-    train.click(train.widget(texts.TRAIN_LOOK[0]).box.center)
-    train.frames(2)
-    assert scene.inside.opened
-    train.choice(texts.NETWORK_VIEW_SHOWS[1]).choose(1)
-    assert scene.inside.view.show == SHOWN[1]
-    train.frames(3)
-    train.key(pygame.K_ESCAPE)
-    assert train.top is scene
-    assert not scene.inside.opened
-    train.frames(1)
-    train.press_on(texts.TRAIN_LOOK[0])
-    train.frames(1)
-    assert scene.form.focused is not None
-    train.press_on(texts.TRAIN_LOOK[1])
-    assert not scene.inside.opened
-
-
-PAD = {
-    "up": pygame.CONTROLLER_BUTTON_DPAD_UP,
-    "down": pygame.CONTROLLER_BUTTON_DPAD_DOWN,
-    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT,
-    "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
-    "confirm": pygame.CONTROLLER_BUTTON_A,
-    "back": pygame.CONTROLLER_BUTTON_B,
-}
-KEYS = {
-    "up": pygame.K_UP,
-    "down": pygame.K_DOWN,
-    "left": pygame.K_LEFT,
-    "right": pygame.K_RIGHT,
-    "confirm": pygame.K_RETURN,
-    "back": pygame.K_ESCAPE,
-}
-
-
-def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
-    scene = train.top
-    form = scene.form
-    train.press_on(texts.TRAIN_MORE_KNOBS[0])
-    train.frames(1)
-    for page, word in enumerate(train.choice(KNOB_PAGE).options):
-        train.choice(KNOB_PAGE).choose(page)
-        train.frames(1)
-        boxes = [widget.box for widget in form.widgets]
-        reached, frontier = {0}, [0]
-        while frontier:
-            index = frontier.pop()
-            # Left and right turn some, and lead nowhere; a choice leads on at its ends.
-            turns = type(form.widgets[index]).shift not in (Widget.shift, ChoiceRow.shift)
-            ways = (UP, DOWN) if turns else (UP, DOWN, LEFT, RIGHT)
-            fresh = {neighbour(boxes, index, way, in_order=True) for way in ways} - reached
-            reached |= fresh
-            frontier += fresh
-        missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]
-        assert missed == [], word
-
-
-@pytest.mark.parametrize("device", ["keys", "pad"])
-def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: str) -> None:
-    def press(name: str) -> None:
-        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
-
-    scene = train.top
+def test_a_run_is_started_named_found_and_left_without_a_mouse(train: Driver) -> None:
+    scene, press = train.top, Player(train, "pad").press
     press("confirm")
     train.wait(lambda: len(scene.run.history) >= 2)
     press("confirm")
@@ -299,6 +186,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     press("confirm")
     assert train.top is scene
     train.wait(scene.library.runs)
+    (run,) = scene.library.runs()
+    assert (run.problem, run.seed) == ("", 3)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
@@ -306,7 +195,7 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 @pytest.mark.slow
 def test_a_dead_worker_is_reported_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
     beside.unseen = True
-    start(beside)
+    learn(beside)
     scene = beside.top
     beside.wait(lambda: scene.library.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
     for child in active_children():
@@ -351,10 +240,3 @@ def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     game.wait(lambda: threading.active_count() <= threads)
     gc.collect()
     assert not [each for each in _kept() if id(each) not in others]
-
-
-@pytest.mark.slow
-def test_closing_the_game_ends_the_worker(beside: Driver) -> None:
-    start(beside)
-    beside.app.close()
-    assert not active_children()

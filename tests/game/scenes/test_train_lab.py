@@ -8,7 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-import pygame
 import pytest
 
 from ai.files import read_json
@@ -25,6 +24,7 @@ from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import AHEAD, TrainingRun
 from game.training.run_settings import knob_descriptions
+from game.ui.rows import RunRow
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.recordings import growing, recorded
@@ -160,9 +160,14 @@ def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path)
     assert "learning_rate" not in read_json(left.folder / "training.json")["changes"]
 
 
-def test_pause_and_step_are_for_both(train: Driver) -> None:
+def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(train: Driver) -> None:
     split(train)
     run = train.top.run
+    train.top.knobs.turn("discount", 0.9)
+    train.top.knobs.turn("learning_rate", 0.001)
+    train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
+    assert run.config.discount == 0.9
+    assert run.twin.config.learning_rate == 0.3
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(3)
     assert run.twin.state is run.state is WorkerState.PAUSED
@@ -174,49 +179,11 @@ def test_pause_and_step_are_for_both(train: Driver) -> None:
     assert (run.turns, run.twin.turns) == (before[0] + 1, before[1] + 1)
 
 
-def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver) -> None:
-    split(train)
-    run = train.top.run
-    train.top.knobs.turn("discount", 0.9)
-    train.top.knobs.turn("learning_rate", 0.001)
-    train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
-    train.frames(5)
-    assert run.config.discount == 0.9
-    assert run.twin.config.learning_rate == 0.3
-
-
-def test_two_lines_in_every_chart_by_decisions(train: Driver) -> None:
-    split(train)
-    train.frames(60)
-    for chart in train.top.charts.charts:
-        assert len(chart.runs) == 2
-    train.press_on(texts.LAB_KNOBS)
-    train.frames(1)
-    assert train.choice(texts.TRAIN_AXES[1]).index == 1
-
-
-def test_a_run_that_makes_room_for_an_experiment_is_in_the_list(train: Driver) -> None:
-    scene = train.top
-    train.press_on(texts.TRAIN_START)
-    train.wait(lambda: len(scene.run.history) >= 2)
-    split(train)
-    (kept,) = scene.library.runs()
-    assert kept.decisions > 0
-
-
 # The guess
 
 
-@pytest.mark.parametrize("device", ["keys", "mouse", "pad"])
-def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str) -> None:
-    def press(label: str) -> None:
-        widget = train.widget(label)
-        if device == "mouse":
-            train.click(widget.box.center)
-            return
-        train.form.focus(widget)
-        train.key(pygame.K_RETURN) if device == "keys" else train.button(pygame.CONTROLLER_BUTTON_A)
-
+def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
+    press = train.press_on
     scene, laboratory = train.top, train.top.laboratory
     press(texts.TRAIN_EXPERIMENTS)
     train.frames(2)
@@ -277,15 +244,15 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     train.wait(lambda: len(scene.run.history) >= 1)
     assert not np.isfinite(scene.run.history["success"]).any()
     monkeypatch.setattr(inline_worker, "TURNS", 40)
-    for answer in (texts.LAB_KEEP_RUN, texts.LAB_KEEP_EXPERIMENT):
-        split(train)
-        for each in (scene.run, scene.run.twin):
-            train.wait(partial(flown, each))
-        train.press_on(answer)
-        train.frames(30)
-        curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
-        assert {row.label for row in scene._legend} <= curves
-    assert len(scene._legend) > 1
+    split(train)
+    for each in (scene.run, scene.run.twin):
+        train.wait(partial(flown, each))
+    train.press_on(texts.LAB_KEEP_EXPERIMENT)
+    train.frames(14)
+    curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
+    legend = {row.label for row in train.form.widgets if isinstance(row, RunRow)}
+    assert legend <= curves
+    assert len(legend) > 1
 
 
 def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
@@ -322,31 +289,21 @@ def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     assert texts.LAB_AS_GUESSED in came_words("never", "never")
 
 
-def test_both_shares_are_those_of_the_painted_chart(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_painted_chart(
+    train: Driver, monkeypatch: pytest.MonkeyPatch
+) -> None:
     split(train)
-    train.frames(30)
+    train.frames(14)
     written = words_written(monkeypatch)
-    for _ in range(20):
+    for _ in range(8):
         written.clear()
         train.frames(1)
         shares = [each for each in written if each.endswith(texts.SPLIT_LANDED.format(percent=""))]
         assert shares == [texts.SPLIT_LANDED.format(percent=share) for share in train.top.charts.landed]
-
-
-def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
-    train.press_on(texts.TRAIN_MORE_CHARTS[0])
-    train.press_on(texts.TRAIN_START)
-    scene = train.top
-    painted = {chart.label: chart for chart in scene.charts.charts}
-    success, epsilon = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon"))
-    train.wait(lambda: success.painted_caption and epsilon.painted_caption)
-    assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
-    for _ in range(40):  # in each frame, the number that is written is the caption's
-        train.frames(1)
-        words = texts.CHART_CAPTIONS["epsilon"]
-        captions = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
-        assert epsilon.painted_caption in captions | {words["all"]} or epsilon.caption != epsilon.painted_caption
+    assert {len(chart.runs) for chart in train.top.charts.charts} == {2}
+    train.press_on(texts.LAB_KNOBS)
+    train.frames(1)
+    assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
@@ -356,13 +313,13 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     train.frames(2)
     scene.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
-    assert scene.moment == run.swarms.moments[0]
-    shown = [swarm.swarm_state.decisions for swarm in scene.split_view.swarms]
-    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.moment).decisions]
+    assert scene.rewind.moment == run.swarms.moments[0]
+    shown = [swarm.swarm_state.decisions for swarm in scene.landers.pair]
+    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.rewind.moment).decisions]
     assert shown[1] < run.twin.swarm_state.decisions
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
-    assert scene.split_view.swarms[1].swarm_state is run.twin.swarm_state
+    assert scene.landers.pair[1].swarm_state is run.twin.swarm_state
 
 
 def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:

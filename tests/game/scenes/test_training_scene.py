@@ -1,35 +1,31 @@
 """Of both scenes that train: what is seen first, in windows of any shape, and what a failure leaves behind."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pygame
 import pytest
 
+from ai.training.history import History
 from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import Canvas
 from game.scenes.train import digits, scene
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE
 from game.scenes.train.digits import DigitTrainingScene
-from game.scenes.train.knob import Knob
 from game.scenes.train.scene import TrainScene
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.library import Library
+from game.training.record import put_beside
 from game.ui.context import Context
-from game.ui.rows import ButtonRow
+from tests.ai.training.test_hints import HEALTHY
+from tests.game.tour.checkers import MOST_WORDS
 from tests.support.driver import Driver
 from tests.support.written import Written
 
-WINDOWS = (
-    ((1280, 720), "normal"),
-    ((1280, 720), "largest"),
-    ((800, 600), "normal"),
-    ((800, 600), "largest"),
-    ((720, 1280), "normal"),
-)
-MOST_WORDS, MOST_CHOICES = 60, 7
+WINDOWS = (((1280, 720), "largest"), ((800, 600), "normal"), ((720, 1280), "normal"))
 SCENES = (TrainScene, DigitTrainingScene)
 
 
@@ -49,30 +45,15 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
     ]
 
 
-def words_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The words of a frame, without figures."""
-    return [word for word in " ".join(written_in(driver, monkeypatch)[0]).split() if any(map(str.isalpha, word))]
-
-
-@pytest.mark.parametrize("first", SCENES)
-def test_few_words_and_choices_come_first(
-    open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, first: type[Scene]
-) -> None:
-    driver = open_game(first)
-    driver.frames(2)
-    choices = [each for each in driver.form.widgets if isinstance(each, Knob | ButtonRow)]
-    assert len([each for each in choices if isinstance(each, Knob)]) == 3
-    assert len(choices) <= MOST_CHOICES, [each.label for each in choices]
-    assert len(words_in(driver, monkeypatch)) <= MOST_WORDS, words_in(driver, monkeypatch)
-
-
 def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At first sight `tests/game/tour` counts them."""
     train.top.open(MORE)
     train.press_on(texts.TRAIN_START)
-    train.wait(lambda: len(train.top.run.history) >= 8)
+    train.wait(lambda: len(train.top.run.history) >= 4)
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(14)
-    assert len(words_in(train, monkeypatch)) <= MOST_WORDS, words_in(train, monkeypatch)
+    words = [word for word in " ".join(written_in(train, monkeypatch)[0]).split() if any(map(str.isalpha, word))]
+    assert len(words) <= MOST_WORDS, words
 
 
 def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
@@ -111,6 +92,23 @@ def test_no_text_lies_on_another_in_any_window(
                 driver.frames(14)
                 lying = written_in(driver, monkeypatch)[1]
                 assert not [pair for pair in lying if not any(name in pair for name in names)]
+
+
+def test_a_run_beside_is_taken_away_by_its_row(open_game: Callable[..., Driver]) -> None:
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    names = ["five", "four", "three", "two", "one"]
+    for name in reversed(names):
+        run = History()
+        for second in range(20):
+            run.append(replace(HEALTHY, seconds=second, decisions=100 * second))
+        put_beside(driver.top.run.earlier, name, run)
+    for gone, press in (("two", driver.press_on), ("four", lambda name: driver.click(driver.widget(name).box.center))):
+        driver.frames(30)
+        assert {run.name for run in driver.top.charts.charts[0].runs} == set(names)
+        press(gone)
+        names.remove(gone)
+    assert [each.name for each in driver.top.run.earlier] == names
 
 
 def places(folder: Path) -> tuple[Path, Path]:

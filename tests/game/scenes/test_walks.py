@@ -23,13 +23,11 @@ from tests.support.tour import scene_types
 NO_SCREENS = {"PlayScene", "ErrorScene"}
 
 
-@pytest.fixture(params=DEVICES)
-def open_screen(
-    request: pytest.FixtureRequest, open_game: Callable[..., Driver], context: Context
-) -> Callable[..., Player]:
-    def open_it(make: Callable[[Context], Scene]) -> Player:
+@pytest.fixture
+def open_screen(open_game: Callable[..., Driver], context: Context) -> Callable[..., Player]:
+    def open_it(make: Callable[[Context], Scene], device: str) -> Player:
         save_settings(context)
-        player = Player(open_game(make), request.param)
+        player = Player(open_game(make), device)
         player.frames(3)
         return player
 
@@ -41,7 +39,7 @@ def test_every_screen_there_is_will_be_walked():
 
 
 def test_a_mission_is_found_flown_and_left(open_screen):
-    player = open_screen(SCREENS["MenuScene"])
+    player = open_screen(SCREENS["MenuScene"], "pad")
     player.choose(texts.MENU["play"][0])
     player.choose(texts.FLIGHTS["missions"][0])
     assert player.top_name == "MissionsScene"
@@ -61,8 +59,9 @@ def test_a_mission_is_found_flown_and_left(open_screen):
     assert player.top_name == "MenuScene"
 
 
-def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
-    player = open_screen(SCREENS["MenuScene"])
+@pytest.mark.parametrize("device", DEVICES)
+def test_a_flight_is_flown_paused_handed_over_and_left(open_screen, device: str):
+    player = open_screen(SCREENS["MenuScene"], device)
     player.choose(texts.MENU["play"][0])
     player.choose(texts.FLIGHTS["free"][0])
     player.press("main", "hand over")
@@ -74,7 +73,7 @@ def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
 
 
 def test_a_replay_is_watched_wound_and_flown_on(open_screen):
-    player = open_screen(lambda context: [flown(context), MenuScene(context)][1])
+    player = open_screen(lambda context: [flown(context), MenuScene(context)][1], "keys")
     player.choose(texts.MENU["play"][0])
     player.choose(texts.FLIGHTS["logbook"][0])
     player.press("confirm")
@@ -96,8 +95,9 @@ def test_a_replay_is_watched_wound_and_flown_on(open_screen):
     assert player.top_name == "MenuScene"
 
 
-def test_settings_are_changed_and_kept(open_screen):
-    player = open_screen(SCREENS["MenuScene"])
+@pytest.mark.parametrize("device", DEVICES)
+def test_settings_are_changed_and_kept(open_screen, device: str):
+    player = open_screen(SCREENS["MenuScene"], device)
     player.choose(texts.MENU["settings"][0])
     player.choose(texts.SETTINGS["colour_safe"][0])
     assert player.saved()["colour_safe"] is True

@@ -7,27 +7,19 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.agent import DeepQAgent
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.flight.flight import DECISION_STEPS
 from game.scenes.watch.scene import WatchScene
 from game.scenes.watch.touch import FASTEST, NOTCH, PLACE, SPEED, TILT, Hand
 from game.ui.context import Context
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver
+from tests.support.player import DEVICES, Player
 
 Open = Callable[..., Driver]
-ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
-CROSS = {
-    pygame.CONTROLLER_BUTTON_DPAD_LEFT: (-1, 0),
-    pygame.CONTROLLER_BUTTON_DPAD_RIGHT: (1, 0),
-    pygame.CONTROLLER_BUTTON_DPAD_UP: (0, 1),
-    pygame.CONTROLLER_BUTTON_DPAD_DOWN: (0, -1),
-}
 
 
-@pytest.fixture(params=["modern", "scripted"])
+@pytest.fixture(params=["modern"])
 def watching(request: pytest.FixtureRequest, open_game: Open, context: Context) -> Driver:
     context.settings.model = request.param
     context.settings_file.save(context.settings)
@@ -72,6 +64,7 @@ def drag(driver: Driver, start: tuple[float, float], end: tuple[float, float]) -
     driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(end), button=1)
 
 
+@pytest.mark.parametrize("watching", ["modern", "scripted"], indirect=True)
 def test_the_mouse_puts_the_lander_elsewhere(watching: Driver):
     watching.key(pygame.K_SPACE)
     before, first = state(watching), scene(watching).decision
@@ -118,15 +111,6 @@ def test_the_mouse_throws_by_the_arrow_whose_length_is_the_speed(watching: Drive
     check_decision(watching)
 
 
-def test_a_lander_that_flies_cannot_be_dragged(watching: Driver):
-    middle = hand(watching).middle
-    drag(watching, middle, (middle[0] - 200, middle[1]))
-    assert not scene(watching).world.touched
-    watching.post(pygame.MOUSEWHEEL, x=0, y=2)
-    watching.key(pygame.K_q)
-    assert not scene(watching).world.touched
-
-
 def test_no_hand_puts_it_into_the_ground_or_out_of_sight(watching: Driver):
     watching.key(pygame.K_SPACE)
     for place in ((700, 719), (3, 719), (3, 3), (1279, 3), (1279, 719)):
@@ -140,47 +124,41 @@ def test_no_hand_puts_it_into_the_ground_or_out_of_sight(watching: Driver):
     check_decision(watching)
 
 
-@pytest.mark.parametrize("device", ["keys", "gamepad"])
+@pytest.mark.parametrize("device", DEVICES)
 def test_keys_and_gamepad_move_tilt_and_throw(watching: Driver, device: str):
-    keys = device == "keys"
-    press = watching.key if keys else watching.button
-    press(pygame.K_g if keys else pygame.CONTROLLER_BUTTON_LEFTSTICK)
-    assert scene(watching).playback.stopped
-    confirm = pygame.K_RETURN if keys else pygame.CONTROLLER_BUTTON_A
+    player, keys = Player(watching, device), device == "keys"
 
-    def hold(code: int, frames: int = 12) -> np.ndarray:
+    def press(key: int, button: int) -> None:
+        watching.key(key) if keys else watching.button(button)
+
+    def hold(name: str) -> np.ndarray:
         before = state(watching)
-        if keys:
-            watching.post(pygame.KEYDOWN, key=code, mod=0, unicode="", scancode=0)
-            watching.frames(frames)
-            watching.post(pygame.KEYUP, key=code, mod=0, unicode="", scancode=0)
-        else:
-            watching.post(pygame.CONTROLLERBUTTONDOWN, instance_id=0, button=code)
-            watching.frames(frames)
-            watching.post(pygame.CONTROLLERBUTTONUP, instance_id=0, button=code)
+        player.hold(name, down=True)
+        watching.skip(11)
+        player.hold(name, down=False)
         return state(watching) - before
 
-    ways = ARROWS if keys else CROSS
+    press(pygame.K_g, pygame.CONTROLLER_BUTTON_LEFTSTICK)
+    assert scene(watching).playback.stopped
     for part, places in ((PLACE, (0, 1)), (SPEED, (2, 3))):
         while hand(watching).part != part:
-            press(confirm)
-        for code, way in ways.items():
-            moved = hold(code)
-            assert np.sign(np.round(moved[list(places)], 3)).tolist() == list(way)
-            others = [number for number in range(6) if number not in places]
-            assert not moved[others].any()
+            player.press("confirm")
+        for name, way in {"left": [-1, 0], "right": [1, 0], "up": [0, 1], "down": [0, -1]}.items():
+            moved = hold(name)
+            assert np.sign(np.round(moved[list(places)], 3)).tolist() == way
+            assert not np.delete(moved, places).any()
     while hand(watching).part != TILT:
-        press(confirm)
-    assert hold(next(iter(ways)))[4] > 0.1  # to the left
-    assert hold([*ways][1])[4] < -0.1
-    press(pygame.K_q if keys else pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+        player.press("confirm")
+    assert hold("left")[4] > 0.1
+    assert hold("right")[4] < -0.1
+    press(pygame.K_q, pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
     before = state(watching)[4]
-    press(pygame.K_e if keys else pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    press(pygame.K_e, pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
     assert state(watching)[4] == pytest.approx(before - NOTCH)
     check_decision(watching)
-    press(pygame.K_z if keys else pygame.CONTROLLER_BUTTON_X)
+    press(pygame.K_z, pygame.CONTROLLER_BUTTON_X)
     assert not scene(watching).world.touched
-    press(pygame.K_BACKSPACE if keys else pygame.CONTROLLER_BUTTON_B)
+    press(pygame.K_BACKSPACE, pygame.CONTROLLER_BUTTON_B)
     assert not hand(watching).typing
     assert watching.top_name == "WatchScene"
 
@@ -264,22 +242,10 @@ def test_a_wreck_flies_again_and_only_the_shown_one_of_a_swarm_is_touched(open_g
     check_decision(driver)
 
 
-def test_one_step_after_a_touch_flies_the_decision_shown_and_then_shows_the_next(watching: Driver):
-    watching.keys(pygame.K_SPACE, pygame.K_q)
-    watch = scene(watching)
-    shown, steps = watch.decision, watch.swarm.steps
-    watching.key(pygame.K_PERIOD)
-    assert DECISION_STEPS <= watch.swarm.steps - steps <= DECISION_STEPS + 1
-    assert watch.decision.observation[0].tolist() != shown.observation[0].tolist()
-
-
-def test_a_broken_network_can_be_touched_as_well(open_game: Open):
-    driver = open_game(WatchScene, seed=2)
-    policy = scene(driver).network.policy
-    assert isinstance(policy, DeepQAgent)
-    policy.online.values = policy.target.values = np.full_like(policy.online.values, np.nan)
-    driver.keys(pygame.K_SPACE, pygame.K_q, pygame.K_m)
-    driver.frames(20)
-    driver.key(pygame.K_m)
-    driver.frames(20)
-    assert driver.top_name == "WatchScene"
+def test_a_lander_that_flies_cannot_be_dragged(watching: Driver):
+    middle = hand(watching).middle
+    drag(watching, middle, (middle[0] - 200, middle[1]))
+    assert not scene(watching).world.touched
+    watching.post(pygame.MOUSEWHEEL, x=0, y=2)
+    watching.key(pygame.K_q)
+    assert not scene(watching).world.touched

@@ -1,3 +1,5 @@
+"""The real game in a real window, with real keys and the real mouse."""
+
 import json
 import os
 import subprocess
@@ -6,9 +8,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import pygame
 import pytest
 
 from game.core import texts
+from game.drawing.tokens import HUMAN, NET, PALETTE, Colour
 from game.scenes.menus.settings import SettingsScene
 from tests.support.driver import Driver
 from tests.support.window import ROOT, Window, screen, skip_without_a_screen, start
@@ -16,6 +20,8 @@ from tests.support.window import ROOT, Window, screen, skip_without_a_screen, st
 LESS_MOTION = texts.SETTINGS["reduced_motion"][0]
 TO_SETTINGS = (*["Down"] * 5, "Return")
 TO_LESS_MOTION = (*["Down"] * 4, "Return")
+LAMP_AT_THE_TOP = pygame.Rect(360, 20, 280, 110)
+CARDS = pygame.Rect(40, 140, 1200, 80)  # titles, wherever across the window the card stands
 SHOWN = 2.0  # seconds after which a screen that was chosen is there, on a busy machine too
 
 
@@ -68,24 +74,15 @@ def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_
 
 
 @pytest.mark.slow
-def test_full_screen_ten_times_in_a_real_window(display: str, tmp_path: Path):
-    with start(display, tmp_path / "user") as window:
-        for wanted in [True, False] * 5:
-            window.key("F11")
-            window.wait_for(lambda: setting(window, "full_screen") is wanted, "the toggle")  # noqa: B023
-        window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window's old size")
-        window.key("F11")
-        window.wait_for(lambda: window.picture().get_size() == (1280, 800), "the whole screen")
-        assert window.picture_is_bright()
-        assert window.close() == 0
-
-
-@pytest.mark.slow
-def test_a_game_that_begins_in_full_screen_covers_the_screen(display: str, tmp_path: Path):
+def test_a_game_that_begins_in_full_screen_covers_the_screen_and_goes_to_and_fro(display: str, tmp_path: Path):
     with start(display, tmp_path / "user", "--fullscreen") as window:
         window.wait_for(lambda: window.picture().get_size() == (1280, 800), "the whole screen")
+        for wanted in [False, True] * 4:
+            window.key("F11")
+            window.wait_for(lambda: setting(window, "full_screen") is wanted, "the toggle")  # noqa: B023
+        assert window.picture_is_bright()
         window.key("F11")
-        window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")
+        window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window's old size")
         assert window.close() == 0
 
 
@@ -129,4 +126,49 @@ def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path, op
             window.click(*place_of(driver, LESS_MOTION, (wide, high)))
             wanted = wide == 1366
             window.wait_for(lambda: setting(window, "reduced_motion") is wanted, "the switch")  # noqa: B023
+        assert window.close() == 0
+
+
+# Flights
+
+
+def shows(window: Window, colour: Colour, area: pygame.Rect) -> bool:
+    picture = window.picture().subsurface(area)
+    width, height = picture.get_size()
+    seen = (picture.get_at((x, y)) for x in range(width) for y in range(height))
+    return sum(max(abs(a - b) for a, b in zip(pixel[:3], colour, strict=True)) < 8 for pixel in seen) > 12
+
+
+@pytest.mark.slow
+def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path: Path):
+    (tmp_path / "user").mkdir()
+    (tmp_path / "user" / "settings.json").write_text('{"tutored": true}', encoding="utf-8")  # or a first flight teaches
+    with start(display, tmp_path / "user") as window:
+        window.key("Return", "Return")  # the page of Play, and free flight
+        window.wait_for(lambda: shows(window, HUMAN, LAMP_AT_THE_TOP), "the lamp that says you fly")
+        window.key("Tab")
+        window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the lamp that says the network flies")
+        window.key("Tab")
+        window.wait_for(lambda: shows(window, HUMAN, LAMP_AT_THE_TOP), "the stick to come back")
+        window.key("Tab")
+        for _ in range(4):  # even a good network may lose one that was steered badly before
+            window.wait_for(
+                lambda: shows(window, PALETTE.good, CARDS) or shows(window, PALETTE.warn, CARDS),
+                "the end of the flight",
+                40,
+            )
+            if shows(window, PALETTE.good, CARDS):
+                break
+            window.key("Return", "Tab")
+        assert shows(window, PALETTE.good, CARDS)
+        assert window.close() == 0
+
+
+@pytest.mark.slow
+def test_watch_flies_a_swarm_and_counts_its_landings(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user") as window:
+        window.key("Down", "Return")
+        window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the network to fly")
+        window.key("Down", "Right", "Right", "plus", "plus")
+        window.wait_for(lambda: shows(window, PALETTE.good, pygame.Rect(60, 88, 80, 36)), "landings", 40)
         assert window.close() == 0

@@ -5,18 +5,29 @@ import pygame
 
 from game.core import texts
 from game.ui.widget import Widget
+from tests.game.tour.stops import Stop
 from tests.support.driver import Driver
-from tests.support.player import Player
+from tests.support.player import DEVICES, Player
+from tests.support.screens import SCREENS
 
 
-def every_widget_is_reached_and_there_is_a_way_out(driver: Driver, screen: str, device: str) -> None:
+def devices(stop: Stop) -> tuple[str, ...]:
+    """Return what a screen is walked through and left with: those over others by keys and pad alone, flights not."""
+    return (*DEVICES, *(["mouse"] if stop.screen in SCREENS else [])) if stop.walked else ()
+
+
+def walk(driver: Driver, screen: str, device: str) -> None:
+    """Reach every widget, and leave."""
+    if device == "mouse":
+        the_mouse_alone_finds_a_way_out(driver)
+        return
     player = Player(driver, device)
     below = player.app.scenes.stack[:-1]
     if screen in ("WatchScene", "PhysicsScene", "ReplayScene"):
         player.press("step")
     if screen == "NameDialog":
         player.press("down")  # out of the line, with what stands there
-    walk(player)
+    every_widget_is_reached(player)
     if below:
         player.press("back")
         assert player.app.scenes.stack == below, "there is no way back"
@@ -29,7 +40,7 @@ def every_widget_is_reached_and_there_is_a_way_out(driver: Driver, screen: str, 
     assert not player.app.scenes.running, "there is no way out"
 
 
-def walk(player: Player) -> None:
+def every_widget_is_reached(player: Player) -> None:
     player.unseen = True
     found = player.ways()
     player.unseen, player.app.context.settings.reduced_motion = False, True

@@ -50,10 +50,9 @@ def advised(run: Any, turn: Any = lambda *_: None) -> Any:
     return advice
 
 
-def test_while_something_else_waits_no_hint_asks(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_while_something_else_waits_no_hint_asks(context: Context) -> None:
     advice = advised(SimpleNamespace(history=History(), config=MODERN))
-    monkeypatch.setattr(advice.adviser, "advise", lambda *_: Hint("overfed", {"num_envs": 256}))
-    advice.follow(NetworkHealth())
+    advice.adviser.shown = Hint("overfed", {"num_envs": 256})
     assert advice.shown
     advice.silence(True)
     assert not advice.shown

@@ -105,39 +105,6 @@ def test_arrows_go_from_stop_to_stop_even_from_between_them_and_r_brings_the_pre
     assert scene.knobs.config == MODERN
 
 
-def test_the_presets_own_value_is_a_stop_as_well(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    scene.press("Classic")
-    turn_to(game, "memory")
-    knob = scene.knob("learning_starts")
-    assert PRESETS["classic"].learning_starts not in knob.description.stops
-    game.form.focus(knob)
-    scene.heard.clear()
-    game.keys(pygame.K_RIGHT, pygame.K_LEFT)
-    assert [value for _, value in scene.heard] == [70, 64]
-
-
-def test_a_weight_below_zero_grows_to_the_right(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    turn_to(game, "reward")
-    game.form.focus(scene.knob("reward_weights.time"))
-    game.key(pygame.K_RIGHT)
-    assert scene.heard == [("reward_weights.time", -0.6)]
-
-
-def test_switches_and_words_for_keyboard_pad_and_mouse(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    turn_to(game, "network")
-    game.form.focus(scene.knob("dueling"))
-    game.key(pygame.K_RETURN)
-    game.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    words = scene.knob("activation")
-    game.click(words._places[0].center)
-    game.form.focus(words)
-    game.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
-    assert scene.heard == [("dueling", True), ("dueling", False), ("activation", "tanh"), ("activation", "sigmoid")]
-
-
 def test_words_without_room_go_on_below_and_sizes_that_have_none_get_one(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, "network")
@@ -195,30 +162,6 @@ def test_a_preset_is_a_word_and_a_sabotage_waits_under_its_own_name(panel: tuple
     assert scene.knobs.config != MODERN, "it waits"
     scene.press(texts.KNOBS_APPLY)
     assert scene.knobs.config == MODERN
-
-
-def test_turned_knobs_survive_a_preset_by_undo(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    game.click(at(scene.knob("batch_size"), 0.0))
-    scene.press("Classic")
-    scene.press(texts.KNOBS_UNDO)
-    assert scene.knobs.config == MODERN.changed(batch_size=8)
-    assert scene.knobs.name == "Modern"
-
-
-def test_the_seed_is_a_knob_too_and_takes_a_new_run(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    turn_to(game, "lander")
-    game.form.focus(scene.knob("seed"))
-    game.keys(pygame.K_RIGHT, pygame.K_RIGHT)
-    assert (scene.knobs.seed, scene.heard) == (2, [("seed", 1), ("seed", 2)])
-    scene.knobs.set_running(True)
-    game.key(pygame.K_LEFT)
-    assert (scene.knobs.seed, scene.knobs.settings.waiting) == (2, ["seed"])
-    scene.knobs.set_config(MODERN, 123_456)  # of a run that the command has begun
-    game.frames(2)
-    game.key(pygame.K_LEFT)
-    assert scene.knobs.settings.draft_seed == 98
 
 
 def test_a_new_pay_says_that_the_memory_begins_anew(panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch):
@@ -279,18 +222,6 @@ def test_a_knob_whose_time_is_over_keeps_its_name_and_turns_what_acts_now(panel:
     game.top.open(KNOBS)
     game.frames(2)
     assert scene.knob("final_learning_rate").label == texts.KNOBS["final_learning_rate"]
-
-
-def test_what_is_not_turned_on_says_so(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    turn_to(game, "memory")
-    exponent, batch = scene.knob("priority_exponent"), scene.knob("success_batch_size")
-    assert exponent.idle == "Changes nothing while Prioritised is off."
-    assert batch.idle == "Changes nothing while Success pass is off."
-    scene.knobs.turn("prioritised", True)
-    scene.knobs.turn("success_pass", True)
-    assert not exponent.idle
-    assert not batch.idle
 
 
 def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:

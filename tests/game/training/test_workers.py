@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,16 +23,17 @@ class Notebook(TrainingRun):
         self.path, self.closing = path, False
 
     def close(self) -> None:
-        self.closing, self._launch = True, None
+        self.closing, self._next = True, None
         if self._worker:
             self._worker.close(5.0)
 
     def note(self, name: str, seconds: float = 0.0, note: str = "") -> str:
-        def launch() -> str:
-            self._worker = Worker(keep, self.path, name, seconds)
-            return note
+        return self.begin((name, seconds, note), 0)
 
-        return self._start(launch)
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
+        name, seconds, note = config
+        self._worker = Worker(keep, self.path, name, seconds)
+        return note
 
     @property
     def lines(self) -> list[str]:
@@ -62,49 +64,31 @@ def wait(learner: Notebook, until: Callable[[], object]) -> list[str]:
 
 
 def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(notebook: Notebook):
-    assert notebook.note("one", 0.5, "at once") == "at once"
+    """Of two that wait the last one is meant, and so is what is asked meanwhile."""
+    assert notebook.note("one", 0.3, "at once") == "at once"
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    assert notebook.note("two", note="later") == ""
+    assert notebook.note("two", note="never") == ""
+    assert notebook.note("three", note="later") == ""
+    notebook._order(Worker.pause)
     assert notebook.waiting
     assert notebook.state is WorkerState.STARTING
     assert notebook.alive
-    notes = wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
+    notes = wait(notebook, lambda: notebook.state is WorkerState.PAUSED)
     assert notes == ["later"]
-    assert notebook.lines == ["one begins", "one ends", "two begins"]
-
-
-def test_what_is_asked_meanwhile_is_for_the_run_to_come(notebook: Notebook):
-    notebook.note("one", 0.3)
-    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.note("two", 0.0)
-    notebook._order(Worker.pause)
-    wait(notebook, lambda: notebook.state is WorkerState.PAUSED)
-    assert notebook.lines[-1] == "two begins"
-
-
-def test_of_two_that_wait_the_last_one_is_meant(notebook: Notebook):
-    notebook.note("one", 0.3)
-    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.note("two", 0.0)
-    notebook.note("three", 0.0)
-    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "one ends", "three begins"]
 
 
-def test_one_that_does_not_end_is_ended(notebook: Notebook, monkeypatch: pytest.MonkeyPatch):
+def test_one_that_does_not_end_is_ended_and_after_a_close_nothing_begins(
+    notebook: Notebook, monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setattr("game.core.worker.STOP_SECONDS", 0.3)
     notebook.note("one", 60.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.note("two", 0.0)
+    notebook.note("two", 0.1)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "two begins"]
-
-
-def test_after_a_close_nothing_begins(notebook: Notebook):
-    notebook.note("one", 0.2)
-    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.note("two", 0.0)
+    notebook.note("three", 0.0)
     notebook.close()
     notebook.poll()
     assert not notebook.alive
-    assert notebook.lines == ["one begins", "one ends"]
+    assert notebook.lines == ["one begins", "two begins", "two ends"]

@@ -8,15 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.training.history import History, SettingChange
-from game.core import texts
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.scenes.train.charts import ticks_of
 from game.ui import plotting
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
 from game.ui.charts import Charts
 from tests.ai.training.test_hints import HEALTHY
-from tests.support.written import words_written
 
 BOX = (40, 450, 372, 128)
 NAN, INF = float("nan"), float("inf")
@@ -79,23 +76,6 @@ def test_limits_hold_the_numbers_but_for_a_few_that_exploded() -> None:
     assert chart_of([3, 250, -4], limits=(0.0, 100.0)).limits == (0.0, 100.0)
 
 
-def test_limits_ease_to_where_they_go_and_jump_with_reduced_motion() -> None:
-    chart = chart_of(np.linspace(0, 1, 50))
-    series = Series(np.arange(50.0), np.linspace(0, 3, 50), "this run")
-    chart.set([series], (0, 49))
-    chart.update()
-    _, before = chart.place(0, 3.0)
-    assert before == pytest.approx(chart.plot.top)  # still too high for the old limits
-    _, top = chart.place(0, 1.0)
-    chart.update()
-    _, next_top = chart.place(0, 1.0)
-    assert next_top > top
-    chart.update(at_once=True)
-    low, high = chart.limits
-    assert chart.place(0, high) == (chart.plot.x, chart.plot.top)
-    assert chart.place(0, low) == (chart.plot.x, chart.plot.bottom)
-
-
 def test_limits_do_not_flicker_while_the_numbers_still_fit() -> None:
     lines = plotting.steady_grid((0.0, 0.99), None)
     for most in (1.01, 0.97, 1.02, 0.95):
@@ -137,11 +117,6 @@ def test_values_that_are_no_numbers_make_a_gap() -> None:
     np.testing.assert_array_equal(np.isnan(line), np.isin(np.arange(101), np.arange(31, 100)))
 
 
-def test_no_line_is_drawn_before_or_after_the_data() -> None:
-    line = plotting.trace(np.arange(20.0, 61.0), np.ones(41), (0, 100), 101, 3)
-    np.testing.assert_array_equal(np.flatnonzero(np.isfinite(line)), np.arange(20, 61))
-
-
 @given(st.integers(1, 5000), st.integers(2, 400), st.integers(0, 2**32 - 1))
 @settings(max_examples=40, deadline=None)
 def test_thinning_keeps_extremes_and_at_most_a_point_a_column(count: int, columns: int, seed: int) -> None:
@@ -160,20 +135,6 @@ def test_a_stroke_is_as_thick_as_it_should_be_and_smooth() -> None:
     np.testing.assert_allclose(middle, 10.3, atol=0.15)
     _, slanted = plotting.stroke(np.linspace(5, 45, 40), 60, 1.6)  # about 45 degrees: √2 thicker upright
     assert slanted.sum(axis=0)[5:-5].mean() == pytest.approx(1.6 * np.hypot(1, 40 / 39), rel=0.05)
-
-
-def test_a_jump_is_drawn_without_spikes_beyond_its_ends() -> None:
-    first, cover = plotting.stroke(np.repeat([90.0, 10.0], 20), 100, 1.6)
-    covered = np.flatnonzero(cover.max(axis=1) > 0.05) + first
-    assert covered.min() >= 10 - 5
-    assert covered.max() <= 90 + 5
-
-
-def test_dashes_leave_gaps() -> None:
-    _, cover = plotting.stroke(np.full(200, 5.0), 10, 2.0, (7.0, 5.0))
-    most = cover.max(axis=0)
-    assert 0.5 < (most > 0.5).mean() < 0.67
-    assert (most == 0).any()
 
 
 # Pointing
@@ -232,21 +193,6 @@ def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.Mo
     chart.hover((0.0, 0.0))
     chart.draw(canvas)
     assert len(boxes) == 4
-
-
-def test_the_cursor_is_shared_and_the_values_are_shown_where_the_mouse_is(canvas: Canvas) -> None:
-    top, bottom = Chart((40, 40, 300, 120), "A"), Chart((40, 200, 200, 120), "B")
-    for chart in (top, bottom):
-        chart.set([Series([0.0, 10.0], [0.0, 1.0], "this run")], (0.0, 10.0))
-    charts = Charts([top, bottom])
-    assert charts.hover(bottom.place(5.0, 0.5)) == pytest.approx(5.0, abs=0.01)
-    before = pygame.surfarray.array3d(canvas.surface)
-    charts.draw(canvas)
-    after = pygame.surfarray.array3d(canvas.surface)
-    x, _ = map(round, top.place(5.0, 0.0))
-    column = slice(int(top.plot.top) + 2, int(top.plot.bottom) - 2)
-    assert (after[x - 1 : x + 2, column] != before[x - 1 : x + 2, column]).any(axis=(0, 2)).all()
-    assert charts.hover((5.0, 5.0)) is None
 
 
 # Drawing
@@ -334,57 +280,12 @@ def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_the
     assert chart.runs[0].last() == 2.0, "the logarithm of the last value that has one"
 
 
-def test_a_log_axis_says_so(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    written = words_written(monkeypatch)
-    for log in (False, True):
-        written.clear()
-        chart = Chart((40, 40, 172, 112), "LOSS", log=log)
-        chart.set([Series(np.arange(4.0), [1.0, 10.0, 100.0, 20.0], "this run", smooth=False)], (0, 3))
-        chart.draw(canvas)
-        assert (texts.CHART_LOG[0] in written) is log
-
-
-def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:
-    chart = chart_of(np.arange(20.0))
-    chart.draw(canvas)
-    canvas.attach(pygame.Surface((1920, 1080)))
-    redraws = chart.redraws
-    chart.draw(canvas)
-    assert chart.redraws == redraws + 1
-
-
 def test_the_curve_is_where_its_values_are(drawn: Callable[[Chart], np.ndarray]) -> None:
     chart = chart_of(np.full(100, 25.0), limits=(0.0, 100.0))
     pixels = drawn(chart)
     blue = pixels[:, :, 2].astype(int) - pixels[:, :, 0]
     rows = blue[20:-20].sum(axis=0)
     assert rows.argmax() == pytest.approx(0.75 * (pixels.shape[1] - 1), abs=1)
-
-
-def test_a_single_wild_value_is_marked_though_the_line_hardly_shows_it(drawn: Callable[[Chart], np.ndarray]) -> None:
-    y = np.full(400, 50.0)
-    plain = drawn(chart_of(y, limits=(0.0, 100.0)))
-    y[100] = 1e4
-    wild = drawn(chart_of(y, limits=(0.0, 100.0)))
-    columns = np.flatnonzero((plain != wild)[:, :3].any(axis=(1, 2)))
-    assert len(columns)
-    assert abs(columns.mean() / len(plain) - 0.25) < 0.02
-    rows = np.flatnonzero((plain != wild)[:, 10:].any(axis=(0, 2)))
-    assert np.ptp(rows) < 0.2 * plain.shape[1]  # it does not drag the line along
-
-
-def test_a_turned_knob_is_listed_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    from game.ui import chart as module
-
-    tooltips: list[list[str]] = []
-    monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: tooltips.append(lines))
-    chart = Chart(BOX, "RETURN")
-    ticks = [Tick(9.9, "knob", "knob"), Tick(10.0, "checkpoint"), Tick(15.0, "another")]
-    chart.set([Series([0.0, 20.0], [0.0, 1.0], "this run")], (0.0, 20.0), ticks)
-    for x in (10.0, 15.0, 18.0):
-        chart.hover(chart.place(x, 0.5))
-        chart.draw(canvas)
-    assert [lines[1:] for lines in tooltips] == [["knob"], ["another"], []]
 
 
 UGLY = {
@@ -427,52 +328,12 @@ def test_ugly_numbers_are_drawn(canvas: Canvas) -> None:
         assert chart.x_at(chart.plot.center) is not None, x_range
 
 
-def test_an_empty_chart_has_no_x_but_its_axis(canvas: Canvas) -> None:
-    chart = Chart(BOX, "LOSS")
-    chart.draw(canvas)
-    assert chart.x_at(chart.plot.center) == pytest.approx(0.5)
-    Charts([]).update()
-    Charts([]).draw(canvas)
-
-
-def test_a_chart_writes_no_number_that_is_not_there(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    written = words_written(monkeypatch)
-    chart = Chart(BOX, "SKILL", limits=(0.0, 100.0), read_x="flight {:.0f}".format, empty="of your last ten")
-    chart.draw(canvas)
-    assert written == ["–", "SKILL", "of your last ten"]
-    for flights, ends in ((1, ["flight 1"]), (2, ["flight 1", "flight 2"])):
-        written.clear()
-        chart.set([Series(range(1, flights + 1), [50.0] * flights, "you")], (1.0, float(flights)))
-        chart.renew()
-        chart.draw(canvas)
-        assert [each for each in written if each.startswith("flight")] == ends
-
-
 def test_numbers_are_written_short() -> None:
     for value, text in (
         (0.0, "0"), (0.0213, "0.0213"), (0.84, "0.840"), (-0.5, "−0.500"), (118.2, "118"), (12_345, "12.3k"),
         (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
     ):  # fmt: skip
         assert plotting.compact(value) == text
-
-
-def test_a_name_in_large_type_leaves_room_for_the_latest_number(canvas: Canvas, monkeypatch) -> None:
-    boxes: dict[str, pygame.FRect] = {}
-    text = Canvas.text
-
-    def noted(sheet: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
-        boxes[string] = text(sheet, string, position, **more)
-        return boxes[string]
-
-    chart = Chart((0, 0, 170, 100), "EXPLORATION ε", read=lambda value: f"{value:.2f}")
-    chart.set([Series(np.arange(2.0), np.full(2, 0.33), "this run")], (0.0, 1.0))
-    typeface.grow(1.25)
-    try:
-        monkeypatch.setattr(Canvas, "text", noted)
-        chart.draw(canvas)
-    finally:
-        typeface.grow(1.0)
-    assert boxes["EXPLORATION ε"].right < boxes["0.33"].left
 
 
 def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:

@@ -125,17 +125,6 @@ def test_the_clipboard_is_pasted_copied_and_cut(monkeypatch: pytest.MonkeyPatch)
     assert (copied, line.text, line.edit_position) == (["run", "run"], "7", 0)
 
 
-def test_without_a_clipboard_nothing_is_lost(monkeypatch: pytest.MonkeyPatch):
-    def broken(*_: str) -> str:
-        raise pygame.error("no clipboard")
-
-    for name in ("get_text", "put_text"):
-        monkeypatch.setattr(pygame.scrap, name, broken)
-    line = line_of("one")
-    press(line, pygame.K_x, pygame.K_v, mod=pygame.KMOD_LCTRL)
-    assert line.text == "one"
-
-
 def test_a_held_key_repeats_until_it_is_let_go():
     line = line_of("x" * 30)
     press(line, pygame.K_END, pygame.K_BACKSPACE)
@@ -216,17 +205,6 @@ def test_the_space_that_begins_it_is_not_written_and_nothing_is_not_accepted(pag
     assert scene.entry.text == "  a b"
 
 
-def test_down_and_tab_leave_with_what_was_typed(page: tuple[Driver, Page]):
-    game, scene = page
-    for key, text in ((pygame.K_DOWN, "mine"), (pygame.K_TAB, "own")):
-        scene.form.focus(scene.entry)
-        game.key(pygame.K_RETURN)
-        write(game, text)
-        game.key(key)
-        assert scene.form.focused is scene.word
-        assert scene.entry.text == text
-
-
 def test_the_mouse_places_the_caret_and_a_nudge_does_not_take_the_focus(page: tuple[Driver, Page]):
     game, scene = page
     word = scene.word.box.left + 6, scene.word.box.centery
@@ -279,14 +257,3 @@ def test_a_click_chooses_and_a_second_one_opens(page: tuple[Driver, Page]):
     assert scene.log == [2]
     game.click(third)
     assert scene.log == [2, ("open", 2)]
-
-
-def test_an_empty_list_is_harmless(open_game: Callable[..., Driver]):
-    game = open_game(Page, rows=0)
-    scene = game.top
-    scene.form.focus(scene.list)
-    game.keys(pygame.K_DOWN, pygame.K_RETURN, pygame.K_END)
-    game.click(scene.list.box.center)
-    game.frames(2)
-    assert scene.log == []
-    assert game.top is scene

@@ -15,10 +15,9 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import ChoiceRow
 from tests.support.driver import Driver
 from tests.support.screens import save_settings
-from tests.support.written import Written
+from tests.support.written import Written, words_written
 
 LONG = "One switch fires the engine, and the jets steer by themselves, so that a single key is enough to land. " * 2
 WINDOWS = [(1280, 720), (1920, 1080), (2560, 1080), (800, 600), (720, 1280), (640, 360)]
@@ -77,6 +76,16 @@ def test_a_cursor_measures_exactly_what_it_draws():
         cursor.beside([lambda column: column.pair(LONG, "1"), lambda column: column.aside("short")], (2, 1), 60)
         ends.append(cursor.y)
     assert ends[0] == ends[1] > 300
+
+
+@pytest.mark.parametrize("width", [400.0, 60.0])
+def test_words_beside_a_figure_are_written_once_however_narrow_the_column(
+    width: float, monkeypatch: pytest.MonkeyPatch
+):
+    written = words_written(monkeypatch)
+    canvas = Canvas(pygame.Surface(VIEW_SIZE)).reading
+    Cursor(40, 40, width, canvas.scale, canvas).pair("label", "1234567 m/s")
+    assert written == ["label", "1234567 m/s"]
 
 
 def test_nothing_leaves_its_column_not_even_a_word_without_a_space():
@@ -184,14 +193,6 @@ def test_every_widget_is_clicked_where_it_stands(page: Driver):
         assert isinstance(page.top.log[3], bool)
 
 
-def test_a_word_of_a_choice_is_chosen_by_a_click_on_it_alone(page: Driver):
-    choice = page.the(ChoiceRow)
-    page.click(choice._places[2].center)
-    page.click((choice.box.right - 5, choice.box.centery))  # beside all words
-    page.click(choice._places[1].center)
-    assert page.top.log == [2, 1]
-
-
 def test_the_end_of_a_column_leads_to_the_next_and_the_last_to_the_first(page: Driver):
     page.form.focus(page.widget("Switch"))  # the last of its column
     for label in ("Rate", "Press", "yes"):
@@ -199,21 +200,6 @@ def test_the_end_of_a_column_leads_to_the_next_and_the_last_to_the_first(page: D
         assert page.form.focused.label == label
     page.key(pygame.K_RIGHT)
     assert page.form.focused.label == "no"
-
-
-def test_rows_are_described_anew_and_the_focus_stays(page: Driver):
-    page.form.focus(page.widget("Press"))
-    page.top.build()
-    assert page.form.focused.label == "Press"
-    assert page.form is not None
-    assert isinstance(page.form, Form)
-
-
-def test_a_figure_that_grows_moves_what_is_below(page: Driver):
-    before = page.widget("Switch").box.top
-    page.top.figure = "a figure that is far too long to stand beside its word in a column of this width at all"
-    page.frames(1)
-    assert page.widget("Switch").box.top > before
 
 
 def test_hints_take_as_many_lines_as_they_need(page: Driver):
@@ -224,3 +210,11 @@ def test_hints_take_as_many_lines_as_they_need(page: Driver):
     for row in page.top.hint_rows(canvas):
         assert row.boxes(canvas)[-1].right <= canvas.view.right
     assert texts.HINT_BACK in page.hints()
+
+
+def test_rows_are_described_anew_and_the_focus_stays(page: Driver):
+    page.form.focus(page.widget("Press"))
+    page.top.build()
+    assert page.form.focused.label == "Press"
+    assert page.form is not None
+    assert isinstance(page.form, Form)

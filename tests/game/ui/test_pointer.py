@@ -83,6 +83,7 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
     assert "PauseScene" in player.top_name
 
 
+@pytest.mark.parametrize("take", ["keys"], indirect=True)
 def test_who_looks_elsewhere_lets_go(take: Take):
     player = take(PhysicsScene, "spin")
     scene = player.top
@@ -101,6 +102,7 @@ def test_who_looks_elsewhere_lets_go(take: Take):
     assert pointer(player).place == place
 
 
+@pytest.mark.parametrize("take", ["pad"], indirect=True)
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player = take(TrainScene)
     player.press("back")

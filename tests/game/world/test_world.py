@@ -1,3 +1,5 @@
+from collections.abc import Callable
+
 import numpy as np
 import pygame
 import pytest
@@ -5,22 +7,22 @@ import pytest
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
+from engine import Circle, Polygon, Sprite, World
 from game.drawing.canvas import Canvas
-from game.drawing.sky import NightSky, beside
+from game.drawing.sky import NightSky
+from game.drawing.tokens import EMBER, HUMAN, INK
+from game.scenes.physics import bodies
+from game.scenes.physics.bodies import Outlines
+from game.scenes.physics.exhibits import EXHIBITS
 from game.world import lander as art
 from game.world.camera import Camera, View
-from game.world.craft import stand
-from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.landscape.backdrop import Backdrop
-from game.world.landscape.pad import draw_pad
 from game.world.landscape.themes import LOOKS, look_of
 from game.world.landscape.wind import Wind
-from game.world.particles import DUST, Particles, Relief
-from game.world.paths import Trails, draw_dotted, draw_faint, draw_stretch
+from game.world.particles import DUST
+from game.world.paths import draw_stretch
 from game.world.stage import Stage
 from tests.support.driver import Driver
-
-SIZES = [(1280, 720), (640, 360), (1000, 800)]
 
 
 @pytest.fixture
@@ -32,40 +34,15 @@ def pixels(surface: pygame.Surface) -> np.ndarray:
     return pygame.surfarray.array3d(surface)
 
 
-@pytest.mark.parametrize("scale", [0.5, 1.0, 1.5])
-def test_metres_become_pixels_and_points_and_come_back(scale: float):
-    view = View(scale, centre=(1.0, 10.0), zoom=1.2)
-    places = np.array([[-20.0, 0.0], [0.0, 1.6], [3.3, 22.0]])
-    assert np.allclose(view.metres(view.points(places)), places)
-    assert np.allclose(view.pixels(places), view.points(places) * scale)
-
-
-def test_at_rest_the_view_shows_the_whole_width_and_the_surface_stands_above_the_read_outs():
-    view = Camera().view(1.0)
-    left, right = view.points([[-20, PARAMS.ground], [20, PARAMS.ground]])
-    assert (left[0], right[0]) == (0, 1280)
-    assert 600 < left[1] < 656
-
-
-@pytest.mark.parametrize("window", SIZES)
-def test_the_same_chance_paints_the_same_moon(window: tuple[int, int]):
-    canvas = Canvas(pygame.Surface(window))
-    pictures = []
-    for _ in range(2):
-        Backdrop(canvas.size, np.random.default_rng(7)).draw(canvas, Camera(), 1.0)
-        pictures.append(pixels(canvas.surface))
-    assert np.array_equal(*pictures)
-    assert pictures[0].any(axis=2).mean() > 0.99  # the whole view is painted
-
-
-def test_reduced_motion_stills_the_stars_and_motion_does_not(canvas: Canvas):
+def test_the_same_chance_paints_the_same_moon_and_reduced_motion_stills_its_stars(canvas: Canvas):
     for reduced in (True, False):
-        backdrop = Backdrop(canvas.size, np.random.default_rng(7), reduced)
         pictures = []
-        for time in (0.0, 2.0):
-            backdrop.draw(canvas, Camera(), time)
+        for time in (0.0, 0.0, 2.0):
+            Backdrop(canvas.size, np.random.default_rng(7), reduced).draw(canvas, Camera(), time)
             pictures.append(pixels(canvas.surface))
-        assert np.array_equal(*pictures) is reduced
+        assert np.array_equal(pictures[0], pictures[1])
+        assert np.array_equal(pictures[0], pictures[2]) is reduced
+        assert pictures[0].any(axis=2).mean() > 0.99  # the whole view is painted
 
 
 def test_no_star_is_where_words_are(game: Driver):
@@ -97,77 +74,6 @@ def test_the_art_fits_the_physics():
     assert abs((rows[-1] + 1 - middle) / scale - PARAMS.stand) < 0.03
     across = cover[:, round(middle - 0.03 * scale)]  # at the hull's widest
     assert abs((np.flatnonzero(across)[-1] - middle) / scale - max(x for x, _ in HULL)) < 0.06
-
-
-def test_a_small_lander_still_stands_on_its_feet():
-    for angle in (0.0, 0.4):
-        x, y = stand(2.0, 5.0, angle, 0.4)
-        foot = np.array([x, y]) + 0.4 * PARAMS.stand * np.array([np.sin(angle), -np.cos(angle)])
-        assert np.allclose(foot, np.array([2.0, 5.0]) + PARAMS.stand * np.array([np.sin(angle), -np.cos(angle)]))
-
-
-def test_fire_grows_with_thrust_and_none_is_no_fire():
-    assert plume(HUMAN_PLUME, 32.0, 0.3, 0.0, 0) is None
-    weak, strong = (plume(HUMAN_PLUME, 32.0, 0.3, thrust, 0) for thrust in (1 / LEVELS, 1.0))
-    assert weak is not None
-    assert strong is not None
-    assert pixels(strong[0]).sum() > 3 * pixels(weak[0]).sum()
-
-
-def test_particles_move_in_update_and_never_in_draw(canvas: Canvas):
-    view = Camera().view(canvas.scale)
-    particles = Particles(np.random.default_rng(1), Relief(LanderEnv()), PARAMS.gravity)
-    for _ in range(30):
-        particles.blow(0.0, 1.0)
-    particles.burst(np.array([0.0, 3.0]), np.array([1.0, -4.0]))
-    pictures = []
-    for _ in range(2):
-        canvas.surface.fill((30, 30, 40))
-        particles.draw(canvas.surface, view, 0.5)
-        pictures.append(pixels(canvas.surface))
-    assert np.array_equal(*pictures)
-    for _ in range(300):
-        particles.update()
-    canvas.surface.fill((30, 30, 40))
-    particles.draw(canvas.surface, view, 1.0)
-    assert (pixels(canvas.surface) == (30, 30, 40)).all()  # all gone
-
-
-@pytest.mark.parametrize("count", [1, 16])
-def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
-    env = LanderEnv(count, 3, frame_skip=1)
-    env.reset()
-    stage, trails = Stage(env, np.random.default_rng(0)), Trails(count)
-    nobody = np.zeros(count, bool)
-    for _ in range(90):
-        env.step(np.full(count, 4))
-        stage.follow(~nobody, nobody)
-        trails.follow(env.position, env.outcome, nobody, nobody)
-    trails.follow(env.position, env.outcome, nobody, ~nobody)
-    view = Camera().view(canvas.scale)
-    poses = np.concatenate([env.position, env.angle[:, None]], axis=1)
-    pictures = []
-    for _ in range(2):
-        canvas.surface.fill((10, 10, 20))
-        draw_pad(canvas, view, (0.0, 1.6), 6.0, 0.4)
-        trails.draw(canvas, view, 0)
-        draw_dotted(canvas, view, np.array([[0.0, 12.0], [2.0, 9.0], [3.0, 2.0]]), (255, 196, 112))
-        stage.draw_fires(canvas, view, poses, ~nobody, 0.5)
-        stage.draw_swarm(canvas, view, poses, ~nobody, 0.5)
-        stage.draw_lander(canvas, view, poses[0])
-        stage.draw_dust(canvas, view, 0.5)
-        pictures.append(pixels(canvas.surface))
-    assert np.array_equal(*pictures)
-
-
-def test_a_line_fades_out_below_the_words_at_the_head(canvas: Canvas):
-    upright = np.stack([np.full(91, 320.0), np.arange(-30.0, 331.0, 4.0)], axis=1)
-    canvas.surface.fill((0, 0, 0))
-    draw_faint(canvas.surface, upright, (255, 255, 255), 1.0, head=100.0)
-    light = pixels(canvas.surface)[320, :, 0].astype(int)
-    assert not light[:98].any()
-    assert (light[170:320] > 240).all()
-    assert (np.diff(light[100:170]) >= 0).all()
 
 
 @pytest.mark.parametrize("before", [(900.0, 300.0), (250.0, 900.0)])
@@ -220,8 +126,76 @@ def test_wind_is_seen_to_go_its_way_and_is_a_matter_of_time_alone():
     assert not np.array_equal(seen(1.0), first)  # it goes on blowing
 
 
-def test_what_is_beside_words_lies_in_no_box():
-    words = [pygame.Rect(10, 10, 20, 5), pygame.Rect(40, 0, 1, 1)]
-    places = np.array([[10.0, 10.0], [29.9, 14.9], [30.0, 12.0], [20.0, 15.0], [40.5, 0.5], [0.0, 0.0]])
-    assert beside(places, words).tolist() == [False, False, True, True, False, True]
-    assert beside(places, []).all()
+# Sprites are what the gallery and the lander are drawn from: by image key, size and layer.
+
+MIDDLE = (640, 360)
+
+
+@pytest.fixture
+def drawn() -> Callable[[list[Sprite]], tuple[int, int, int]]:
+    """Draw sprites and return the colour in the middle of the view."""
+
+    def draw(sprites: list[Sprite]) -> tuple[int, int, int]:
+        canvas = Canvas(pygame.Surface((1280, 720)))
+        poses = np.array([[*sprite.body.position[0], sprite.body.angle[0]] for sprite in sprites])
+        Outlines(sprites).draw(canvas, View(1.0, (0.0, 0.0)), poses, None, False)
+        red, green, blue, _ = canvas.surface.get_at(MIDDLE)
+        return red, green, blue
+
+    return draw
+
+
+def test_every_sprite_of_the_gallery_covers_the_shape_that_collides(subtests: pytest.Subtests):
+    for name in EXHIBITS:
+        with subtests.test(name=name):
+            exhibit = EXHIBITS[name](1.62)
+            outlines = Outlines(exhibit.sprites)
+            assert {sprite.body for sprite in exhibit.sprites} >= set(exhibit.bodies)
+            for sprite, (body, outline) in zip(exhibit.sprites, outlines.shapes, strict=True):
+                shape = exhibit.world.shapes[body.index]
+                assert sprite.body is body
+                if isinstance(shape, Circle):
+                    assert isinstance(outline, Circle)
+                    assert outline.radius == shape.radius
+                else:
+                    assert isinstance(outline, Polygon)
+                    np.testing.assert_allclose(outline.vertices, shape.vertices, atol=1e-9)
+
+
+def test_the_highest_layer_is_seen_whatever_the_order(drawn):
+    world = World()
+    low, high = (world.add(Polygon.box(2.0, 2.0), (0.0, 0.0)) for _ in range(2))
+    sprites = [Sprite(low, "box", (2.0, 2.0), layer=1), Sprite(high, "bright-box", (2.0, 2.0), layer=2)]
+    alone = drawn([Sprite(low, "bright-box", (2.0, 2.0))])
+    assert drawn(sprites) == drawn(sprites[::-1]) == alone != drawn(sprites[:1])
+
+
+def test_a_picture_is_found_by_its_key_and_drawn_at_the_size_of_the_sprite(drawn, monkeypatch: pytest.MonkeyPatch):
+    body = World().add(Circle(1.0), (0.6, 0.0))
+    before = drawn([Sprite(body, "disc", (2.0, 2.0))])
+    assert drawn([Sprite(body, "disc", (0.4, 0.4))]) != before
+    monkeypatch.setitem(bodies.PICTURES, "disc", bodies.SpriteShape((), HUMAN))
+    assert drawn([Sprite(body, "disc", (2.0, 2.0))]) != before
+    with pytest.raises(KeyError, match="trebuchet"):
+        Outlines([Sprite(body, "trebuchet", (2.0, 2.0))])
+    assert bodies.PICTURES["ember-disc"].colour == EMBER != bodies.PICTURES["bright-disc"].colour == INK
+
+
+@pytest.mark.parametrize("calm", [False, True])
+def test_a_lander_is_one_sprite_and_what_a_crash_leaves_another(calm: bool):
+    env = LanderEnv(1, seed=3, frame_skip=1)
+    env.reset()
+    stage = Stage(env, np.random.default_rng(0), calm)
+    assert stage.sprite() == Sprite(env.lander, art.LANDER, art.SIZE)
+    assert stage.sprite(size=0.5).size == pytest.approx((art.REACH, art.REACH))
+    while env.outcome[0] == Outcome.FLYING:
+        env.step(np.array([0]))
+        stage.follow(np.array([False]), env.outcome != Outcome.FLYING)
+    assert env.outcome[0] == Outcome.CRASHED
+    wreck = stage.sprite()
+    assert wreck.image == art.WRECK
+    assert (wreck.body is env.lander) is calm  # otherwise it tumbles in a world of its own
+    env.reset()
+    stage.follow(np.array([False]), np.array([False]))
+    assert stage.sprite() == Sprite(env.lander, art.LANDER, art.SIZE), "the next flight, in the same slot"
+    assert stage.pose_after(1.0) is None

@@ -150,11 +150,9 @@ class _Layer:
         middles = view.pixels(poses[:, :2])
         colours = [shades(index, colours) for index, colours in self._discs]
         radii = [round(4 * radius * view.pixels_per_metre) / 4 for radius in self._radii]
-        paints = [
-            _half_steps(partial(_disc, radius, edge, fill, width))
-            for radius, (edge, fill, _) in zip(radii, colours, strict=True)
-        ]
-        _stamp(canvas.surface, middles, paints)
+        discs = zip(radii, colours, strict=True)
+        # To whole and half pixels only, which limits how many costly pictures are painted.
+        _stamp(canvas.surface, middles, (partial(_disc, radius, *pair[:2], width) for radius, pair in discs), 2)
         way = np.stack([np.cos(poses[:, 2]), -np.sin(poses[:, 2])], axis=1) * np.array(radii)[:, None]
         inner, outer = ((middles + share * way).tolist() for share in _MARK)
         for start, end, (_, _, mark) in zip(inner, outer, colours, strict=True):
@@ -220,11 +218,6 @@ def _colours(edge: Colour, share: float) -> _Colours:
     return edge, mix(NIGHT1, edge, share), mix(NIGHT1, edge, 0.75)
 
 
-def _half_steps(paint: _Paint) -> _Paint:
-    """Wrap a paint function to use whole and half pixels only, which limits how many costly pictures are painted."""
-    return lambda quarters: paint((quarters[0] & 2, quarters[1] & 2))
-
-
 @lru_cache(maxsize=256)
 def _disc(radius: float, edge: Colour, fill: Colour, width: int, quarters: tuple[int, int]) -> pygame.Surface:
     """Return a disc of that radius in pixels, its middle `quarters` of a pixel past the middle one."""
@@ -236,10 +229,10 @@ def _disc(radius: float, edge: Colour, fill: Colour, width: int, quarters: tuple
     return disc
 
 
-def _stamp(surface: pygame.Surface, middles: Array, paints: Iterable[_Paint]) -> None:
-    """Blit pictures in one call, their middles at (n, 2) pixels, to a quarter of a pixel."""
+def _stamp(surface: pygame.Surface, middles: Array, paints: Iterable[_Paint], step: int = 1) -> None:
+    """Blit pictures in one call, their middles at (n, 2) pixels, to a `step` of 1 or 2 quarters of a pixel."""
     whole = np.floor(middles)
-    quarters = (4 * (middles - whole)).astype(int).tolist()
+    quarters = ((4 * (middles - whole)).astype(int) // step * step).tolist()
     stamps = []
     for (x, y), (right, down), paint in zip(whole.astype(int).tolist(), quarters, paints, strict=False):
         picture = paint((right, down))

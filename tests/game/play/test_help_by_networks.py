@@ -1,0 +1,260 @@
+"""Networks beside the player: why help did not save a flight, when it stepped in, and which one flies elsewhere."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.copilot.copilot import Mode
+from ai.copilot.futures import KEYS, Lookahead
+from ai.lander.environment import PARAMS, Outcome
+from ai.lander.missions import MISSIONS
+from ai.lander.moment import Moment
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.flight import networks
+from game.flight.flight import Flight, StickHolder
+from game.flight.foresight import HELD, LastChance, SixFutures
+from game.flight.outcomes import outcome_card, qualities
+from game.scenes.play import interventions
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.interventions import Interventions
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.words import why_not_saved
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import fly_out, play
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture(scope="module")
+def agent() -> DeepQAgent:
+    return DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+
+
+def lost(agent: DeepQAgent, mode: Mode, assist: float) -> tuple[Flight, LastChance]:
+    """Turn all the way with noisy hands and a help that cannot keep it upright."""
+    flight, chance = Flight(2, agent, hands="noisy"), LastChance(agent)
+    flight.help(assist, mode)
+    while not flight.over:
+        chance.note(flight.env)
+        flight.step(1)
+    while not chance.known:
+        chance.look(50)
+    return flight, chance
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: DeepQAgent, mode: Mode):
+    flight, chance = lost(agent, mode, 0.01)
+    assert flight.wrecked
+    by_rule = {Mode.TOLERANCE: texts.NOT_SAVED_TOLERANCE, Mode.GUARDIAN: texts.NOT_SAVED_BY_VALUES}
+    assert chance.seconds is not None
+    sentence = texts.LAST_CHANCE.format(seconds=f"{chance.seconds:.1f}")
+    assert why_not_saved(flight, chance) == f"{by_rule[mode]} {sentence}"
+
+
+def test_what_would_have_saved_it_does(agent: DeepQAgent):
+    _, chance = lost(agent, Mode.GUARDIAN, 0.01)
+    assert chance.seconds is not None
+    again = Flight(2, agent, hands="noisy")
+    again.help(0.01, Mode.GUARDIAN)
+    while float(again.env.time[0]) < chance.seconds:
+        again.step(1)
+    [plan] = Lookahead(agent).plans(Moment.of(again.env), [(0, (KEYS[0],))])
+    assert plan is not None
+
+
+def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAgent):
+    flight = Flight(4, agent)
+    futures = SixFutures(agent)
+    futures.begin(Flight(9, agent).env)  # of another moment, left at once
+    futures.follow(3)
+    futures.begin(flight.env)
+    before = flight.env.snapshot()
+    while futures.under_way:
+        futures.follow(10)
+    assert all(lands is not None for lands in futures.lands)
+    for action, (path, lands) in enumerate(zip(futures.paths, futures.lands, strict=True)):
+        flown = Flight(4, agent)
+        for _ in range(round(60 * HELD / 4) * 4):
+            flown.step(action)
+        flown.hand_over()
+        while not flown.over:
+            flown.step(0)
+        assert (flown.outcome is Outcome.LANDED) is lands
+        assert path[-1] == pytest.approx(flown.env.position[0], abs=0.6)
+    assert (flight.env.snapshot()["bodies"]["pose"] == before["bodies"]["pose"]).all()
+
+
+def test_a_landing_that_is_soft_centred_and_upright_is_perfect():
+    for start, met in (((0.0, 0.02, 0.0), ["soft", "centred", "upright"]), ((1.6, 0.02, 0.0), ["soft", "upright"])):
+        aside, above, angle = start
+        flight = Flight(0)
+        x, y = flight.env.pad[0].tolist()
+        state = [x + aside, y + PARAMS.stand + above, 0, 0, angle, 0]
+        flight.env.place(np.ones(1, bool), np.array([state]))
+        while not flight.over:
+            flight.step(0)
+        assert qualities(flight.env) == met
+        assert (outcome_card(flight.env, 1.0).title == texts.PERFECT) is (len(met) == 3)
+
+
+def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_can_be_given_it(
+    open_game, context, written: list[str]
+):
+    context.settings.assist, context.settings.copilot = 0.6, "guardian"
+    context.settings_file.save(context.settings)
+    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
+    driver.frames(2)
+    assert not play(driver).flight.shared
+    assert texts.HELP_NOT_HERE in written
+    driver.key(pygame.K_PLUS)
+    driver.frames(2)
+    assert play(driver).flight.shared
+    assert driver.app.context.settings.assist == 0.6
+    driver.key(pygame.K_r)
+    assert play(driver).flight.shared  # for this mission it stays
+
+
+# How often a co-pilot stepped in, whether a guardian watched over all of a flight, and what is said of it.
+
+
+def follow(shown: Interventions, assist: float | None, *, changed: bool = False) -> None:
+    """Follow a step under a guardian with that assist, or under none."""
+    guarded, decision = assist is not None, SimpleNamespace(assist=assist)
+    flight = SimpleNamespace(
+        decision=decision, shared=guarded, guarded=guarded, guard=None, overridden=changed,
+        env=SimpleNamespace(position=np.zeros((1, 2))),
+    )  # fmt: skip
+    shown.follow(flight)
+
+
+@pytest.fixture
+def wordless(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interventions, "changed_by", lambda _: "changed")
+    monkeypatch.setattr(interventions, "is_late", lambda _: False)
+
+
+@pytest.mark.usefixtures("wordless")
+def test_changes_within_a_second_of_each_other_are_one_intervention():
+    shown = Interventions()
+    for changed in [False] * 90 + [True] * 4 + [False] * 90 + [True] * 4 + [False] * 20 + [True] * 4:
+        follow(shown, 0.4, changed=changed)
+    assert len(shown.moments) == 2
+
+
+@pytest.mark.usefixtures("wordless")
+def test_a_guardian_counts_only_if_it_watched_over_the_whole_flight_alike():
+    for assists, throughout in (
+        ([0.4, 0.4, 0.4], 0.4),
+        ([0.4, 0.5, 0.5], 0.0),
+        ([None, 0.4], 0.0),
+        ([0.4, None, 0.4], 0.0),
+    ):
+        shown = Interventions()
+        for assist in assists:
+            follow(shown, assist)
+        assert shown.throughout == throughout, assists
+
+
+@pytest.mark.usefixtures("wordless")
+def test_that_a_guardian_is_late_is_said_only_if_it_stays_late(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(interventions, "is_late", lambda _: True)
+    shown, words = Interventions(), []
+    for _ in range(4):
+        follow(shown, 0.4, changed=True)
+        words.append(shown.word)
+    assert words == ["", "", "changed", "changed"]
+
+
+# Where it is not as on the moon, the network that lands anywhere flies by itself: mission, ghost, co-pilot.
+
+ELSEWHERE = [name for name, mission in MISSIONS.items() if mission.elsewhere]
+
+
+@pytest.fixture(scope="module")
+def anywhere() -> networks.Policy:
+    """The network that lands anywhere, as the game reads it."""
+    found = networks.chosen(MODELS_DIR, Path("nowhere"), "", True)
+    assert (found.name, found.problem, found.stands_in) == (networks.ANYWHERE, "", "")
+    assert found.policy is not None
+    return found.policy
+
+
+@pytest.fixture
+def copied(context: Context, tmp_path: Path) -> Path:
+    """The networks of a game, to be damaged; its folder of landers."""
+    shutil.copytree(MODELS_DIR, tmp_path / "models")
+    context.models_dir = tmp_path / "models"
+    return tmp_path / "models" / "lander"
+
+
+def test_it_takes_the_place_of_a_shipped_network_and_not_of_ones_own(tmp_path: Path):
+    shutil.copytree(MODELS_DIR / "lander" / "modern", tmp_path / "models" / "mine")
+    for name, flies in (("", "anywhere"), ("modern", "anywhere"), ("gone", "anywhere"), ("mine", "mine")):
+        assert networks.chosen(MODELS_DIR, tmp_path, name, True).name == flies
+    assert networks.chosen(MODELS_DIR, tmp_path).name == "modern"
+    assert networks.ANYWHERE not in networks.folders(MODELS_DIR, tmp_path)
+    assert networks.ANYWHERE not in networks.Policies(MODELS_DIR, tmp_path).names
+
+
+def test_handed_the_stick_it_lands_every_mission(anywhere: networks.Policy):
+    for name in ELSEWHERE:
+        flight = Flight(0, anywhere, mission=name)
+        assert flight.hand_over()
+        assert fly_out(flight).outcome is Outcome.LANDED, name
+        assert set(flight.recording.hands) == {StickHolder.NETWORK}
+
+
+def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open, written: list[str]):
+    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["earth"]))
+    driver.frames(2)
+    driver.key(pygame.K_UP)
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(2)
+    assert texts.NETWORK_EVERYWHERE in " ".join(written)
+    assert "anywhere network" not in " ".join(written)
+    driver.keys(pygame.K_ESCAPE, pygame.K_r, pygame.K_TAB)
+    driver.frames(2)
+    for flight in (play(driver).flight, play(driver).flown.ghost.flight):
+        assert fly_out(flight).outcome is Outcome.LANDED
+
+
+def test_under_another_gravity_it_flies_and_back_on_the_moon_it_does_not(open_game: Open):
+    driver = open_game(PlayScene, 3)
+    assert play(driver).network.name == "modern"
+    for gravity, name in ((2.0, networks.ANYWHERE), (1.0, "modern")):
+        driver.app.context.settings.gravity = gravity
+        driver.key(pygame.K_ESCAPE)
+        driver.key(pygame.K_ESCAPE)
+        assert play(driver).network.name == name
+        assert play(driver).flight.network is play(driver).network.policy
+        driver.frames(30)
+
+
+@pytest.mark.parametrize("damage", ["missing", "torn", "another"])
+def test_where_it_cannot_be_read_the_usual_network_flies_and_that_is_said(
+    open_game: Open, context: Context, copied: Path, damage: str
+):
+    folder = copied / networks.ANYWHERE
+    if damage == "torn":
+        (folder / "config.json").write_text("{")
+    else:
+        shutil.rmtree(folder)
+    if damage == "another":
+        shutil.copytree(copied / "modern", folder)
+    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["earth"]))
+    driver.frames(1)
+    assert play(driver).network.name == "modern"
+    assert isinstance(play(driver).network.policy, DeepQAgent)
+    assert driver.said.startswith("modern flies here")
+    driver.key(pygame.K_TAB)
+    assert play(driver).flight.hand is StickHolder.NETWORK
+    driver.frames(10)
