@@ -37,8 +37,8 @@ def test_the_laggy_pilot_repeats_its_last_action():
 
 def test_a_pilot_flies_as_well_when_measured_as_in_a_batch_that_keeps_its_slots():
     """With hands this slow the scripted pilot lands a third; asked anew at each ending, it would land most."""
-    measured = evaluate(LaggyPilot(ScriptedPilot(), np.random.default_rng(0)), 30, 1)
-    env, lag = LanderEnv(30, 1), LaggyPilot(ScriptedPilot(), np.random.default_rng(0))
+    measured = evaluate(LaggyPilot(ScriptedPilot(), np.random.default_rng(0)), 16, 1)
+    env, lag = LanderEnv(16, 1), LaggyPilot(ScriptedPilot(), np.random.default_rng(0))
     observation = env.reset()
     while (env.outcome == Outcome.FLYING).any():
         observation = env.step(lag.act(observation)).observation

@@ -86,6 +86,6 @@ def test_the_template_nearly_lands_and_the_example_does(tmp_path: Path):
     ):
         (tmp_path / "pilot.py").write_text(path.read_text().replace("aim = 0.0", f"aim = {aim}"))
         pilot = MeasuredPilot(tmp_path / "pilot.py")
-        score = evaluate(pilot, 40, 7)
+        score = evaluate(pilot, 24, 7)
         pilot.close()
         assert least <= score.success <= most, (path.name, aim)

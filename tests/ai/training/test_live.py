@@ -206,7 +206,7 @@ def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
 
 
 def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
-    run = begin(TINY, keep=tmp_path / "keep")
+    run = begin(TINY, keep=tmp_path / "keep", clock=Clock())  # no time passes, so it was not kept before
     messages_in(run, 50)
     assert not (tmp_path / "keep").exists()
     run.close()
