@@ -21,6 +21,7 @@ OPENED = {
     "ai.files.writing": ({"os.open", "temporary.open", "path.open"}, "writes, appends, and waits for the disk"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
     "ai.pilots.child": ({"os.open"}, "the null device"),
+    "ai.sweep.search": ({"self._path.open"}, "writes Optuna's journal, which nothing here reads"),
     "ai.sweep.trial": ({"path.read_bytes"}, "its own code for a hash"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
     "game.core.catalogue": ({"path.read_bytes"}, "comes with the program"),

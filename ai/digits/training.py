@@ -214,9 +214,10 @@ class DigitTraining(Run):
         """
         best = self.best_classifier()
         epochs, seconds = self.step // self.steps_per_epoch, round(self.seconds, 3)
-        described = nearest_preset(self.config, DIGIT_PRESETS) | {"seed": self.seed, "step": self.step}
-        described |= {"epochs": epochs, "seconds": seconds, "held_out": self.best}
-        described |= {"kept_epoch": self.best_epoch, "history": [*self.history]}
+        described = {
+            **nearest_preset(self.config, DIGIT_PRESETS), "seed": self.seed, "step": self.step, "epochs": epochs,
+            "seconds": seconds, "held_out": self.best, "kept_epoch": self.best_epoch, "history": [*self.history],
+        }  # fmt: skip
         if final:
             described["test"] = accuracy(best, *load_part(TEST))
         return described, best.write
@@ -233,12 +234,12 @@ class DigitTraining(Run):
 
     def state(self) -> dict[str, Any]:
         """Return copies of what it goes on from; each step has its own randomness."""
-        best_values = None if self.best_values is None else self.best_values.copy()
-        state: dict[str, Any] = {"step": self.step, "seconds": self.seconds, "best": self.best}
-        state |= {"best_values": best_values}
-        state |= {"history": [*self.history], "loss": self._loss, "accuracy": self._accuracy}
-        state |= {"values": self.classifier.network.values.copy(), "average": self.average.copy()}
-        return state | {"optimizer": self.optimizer.state()}
+        return {
+            "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
+            "best_values": None if self.best_values is None else self.best_values.copy(),
+            "loss": self._loss, "accuracy": self._accuracy, "values": self.classifier.network.values.copy(),
+            "average": self.average.copy(), "optimizer": self.optimizer.state(),
+        }  # fmt: skip
 
     def load_state(self, state: dict[str, Any] | None, folder: Path) -> bool:
         """Go on from what `state` returned; nothing goes on without one."""

@@ -1,28 +1,54 @@
 """What a study tries next: settings that Optuna proposes, or the members of a population.
 
-Comes with the extra `sweep`. Optuna writes nothing: when a study goes on, it gets the finished trials again, in their
-order and through the calls that it got them by at first. Each was checked when it was read: of a study that somebody
-else has made, nothing reaches Optuna but settings and values.
+Comes with the extra `sweep`. Optuna keeps trials and settings in its journal, which its own tools read. Optuna trusts
+a journal, so we never read one: when a study goes on, a new one is begun, and Optuna gets the finished trials again, in
+their order and through the calls that it got them by at first. Each was checked when it was read: of a study that
+somebody else has made, nothing reaches Optuna but settings and values.
 """
 
 from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import optuna
+from optuna.storages import JournalStorage
+from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import TrialState
 
 from ai.sweep.plan import RANDOM, Dimension, Space
 from ai.sweep.study import Asked, FinishedTrial, Study
 
+JOURNAL: Final = "journal.jsonl"
 LEAST: Final = 8  # trials below which nothing is said of importance
 _REDUCTION: Final = 3  # successive halving: one trial in three goes on at each rung
 _SHARE: Final = 4  # one member in four is replaced by a copy of one of the best quarter
 _REDRAWN: Final = 0.25  # chance that a copied knob is drawn anew, as in the paper
 _FACTORS: Final = (0.8, 1.2)
+
+
+class Journal(BaseJournalBackend):
+    """A new journal in a file that this process alone writes; Optuna's own waits for the disk at each line."""
+
+    def __init__(self, path: Path) -> None:
+        self._lines: list[dict[str, Any]] = []
+        self._path = path
+        path.write_bytes(b"")
+
+    def read_logs(self, log_number_from: int) -> Iterator[dict[str, Any]]:
+        """Yield the lines from a number on."""
+        yield from self._lines[log_number_from:]
+
+    def append_logs(self, logs: list[dict[str, Any]]) -> None:
+        """Append lines; raises OSError."""
+        lines = [json.dumps(each) for each in logs]
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write("\n".join(lines) + "\n")
+        self._lines += map(json.loads, lines)
 
 
 class Search:
@@ -45,7 +71,7 @@ class Search:
 
 
 class Proposals(Search):
-    """Optuna's study beside ours."""
+    """Optuna's study beside ours; raises OSError, as for a full disk."""
 
     def __init__(self, study: Study) -> None:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
@@ -57,6 +83,8 @@ class Proposals(Search):
         random = plan.search == RANDOM
         self._study = study
         self._optuna = optuna.create_study(
+            storage=JournalStorage(Journal(study.folder / JOURNAL)),
+            study_name=study.folder.name,
             sampler=optuna.samplers.RandomSampler(seed) if random else tpe(seed=seed, constant_liar=True),
             pruner=optuna.pruners.SuccessiveHalvingPruner(min_resource=1, reduction_factor=_REDUCTION),
             direction="minimize" if study.metric.sign == 1 else "maximize",

@@ -1,6 +1,7 @@
 """Study on disk: its plan, and the finished trials, each whole or not there.
 
     study.json            the plan, trials under way with their settings, the best run so far, which knobs matter
+    journal.jsonl         Optuna's, written and never read (`ai.sweep.search`)
     trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
 Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.

@@ -279,14 +279,16 @@ class History:
 
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if it cannot be written."""
-        described = {"version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale}
-        described |= {"stride": self._stride, "told": self._appended}
-        described["alterations"] = [asdict(change) for change in self.setting_changes]
-        described["validations"] = [asdict(validation) for validation in self.validations]
-        described["checkpoints"] = [
+        checkpoints = [
             {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.normalizer}
             for each in self.checkpoints
         ]
+        described = {
+            "version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale, "checkpoints": checkpoints,
+            "stride": self._stride, "told": self._appended,
+            "alterations": [asdict(change) for change in self.setting_changes],
+            "validations": [asdict(validation) for validation in self.validations],
+        }  # fmt: skip
         values = np.array([each.values for each in self.checkpoints] or np.empty((0, 0)), dtype=np.float32)
         text = np.array(json.dumps(described))
         np.savez(folder / HISTORY_FILE, allow_pickle=False, described=text, points=self.points, values=values)

@@ -7,6 +7,7 @@ around it: schedules of the environment, episodes that end and begin, statistics
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Generator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
@@ -41,6 +42,8 @@ class Progress:
     """Progress of a run after one decision in every environment."""
 
     decisions: int  # of single landers
+    steps: int  # of their physics: a decision is several
+    updates: int
     episodes: int
     success_rate: float  # of the last 100 episodes, exploration included
     mean_return: float  # of the same
@@ -48,6 +51,7 @@ class Progress:
     mean_q: float
     epsilon: float
     stage: int  # of the curriculum
+    steps_per_second: float  # over the last hundred decisions, by the clock
     shares: tuple[float, ...]  # of the same that ended in outcome 1, 2, 3 and 4
     parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
     evaluation: Score | None = None  # when one is finished
@@ -100,6 +104,7 @@ class Training(Run):
         self.statistics = EpisodeStatistics(self.env.num_envs)
         self.best: Score | None = None
         self.best_network: Network | None = None
+        self._moments: deque[float] = deque(maxlen=100)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
         self._validated: DeepQAgent | None = None  # while its flights are under way
         self._flights: Trial[Score] | None = None
@@ -144,9 +149,17 @@ class Training(Run):
         self._held = np.where(result.ended, 0, actions)
         evaluation = self._measure(before)
         return Progress(
-            agent.decisions, self.episodes, statistics.success, statistics.mean_return, agent.loss, agent.mean_q,
-            epsilon, self.env.stage, statistics.shares, statistics.parts, evaluation, self.best, self.config.env,
+            agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
+            statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
+            statistics.shares, statistics.parts, evaluation, self.best, self.config.env,
         )  # fmt: skip
+
+    def _pace(self) -> float:
+        """Physics steps a second, by the moments of the last hundred decisions."""
+        self._moments.append(self.clock())
+        spent = self._moments[-1] - self._moments[0]
+        steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
+        return steps / spent if spent > 0 else 0.0
 
     def apply_live(self, config: Config) -> None:
         """Take over the live knobs of another configuration; what was paid otherwise is forgotten."""
@@ -230,10 +243,12 @@ class Training(Run):
         if final and self.evaluated != self.agent.decisions:
             self.evaluate()
         agent, config = self.agent, self.config
-        described = {"env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed}
-        described |= {"decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes}
-        described |= {"landings": self.env.landings, "seconds": round(self.seconds, 3)}
-        described["best"] = self.best.to_json() if self.best else None
+        described = {
+            "env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed,
+            "decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes,
+            "landings": self.env.landings, "seconds": round(self.seconds, 3),
+            "best": self.best.to_json() if self.best else None,
+        }  # fmt: skip
         best, last = self.best_agent(), self.last_agent()
 
         def write(folder: Path) -> None:

@@ -29,7 +29,7 @@ def test_a_key_passes_the_files_that_the_map_names_and_no_others(open_game: Call
     seen = files_passed(lambda: driver.skip(2))
     env = driver.top.flight.env
     env.place(np.ones(1, bool), np.array([[0.0, 3.0, 0.0, -3.0, 0.0, 0.0]]))
-    seen |= files_passed(lambda: driver.skip(40))
+    seen |= files_passed(lambda: driver.skip(16))
     assert seen >= {STICK, AIR, GROUND}
     paragraph = next(each for each in PAGE.split("\n\n") if each.startswith("**From a key to the thrust"))
     named = set(re.findall(r"`((?:engine|ai|game)/[\w/]+\.py)`", paragraph))

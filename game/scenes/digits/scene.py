@@ -88,6 +88,11 @@ class DigitsScene(PanelScene):
         return self.live.reading
 
     @property
+    def canvas_rect(self) -> pygame.Rect:
+        """The drawing area, in the window's pixels."""
+        return self.context.reading().rect(*self.pad.rect)
+
+    @property
     def probabilities(self) -> Numbers | None:
         """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
         return self.live.probabilities

@@ -143,9 +143,9 @@ def test_the_agent_is_as_before_and_a_lesson_can_be_sent(case, monkeypatch):
     assert agent.rng.bit_generator.state == rng
     again = pickle.loads(pickle.dumps(lesson))
     np.testing.assert_array_equal(again.step.values_after, lesson.step.values_after)
-    monkeypatch.setattr(learning_step, "MOST_PARAMETERS", len(before.online) - 1)
+    monkeypatch.setattr(learning_step, "MOST_PARAMETERS", len(before.agent.online.values) - 1)
     with pytest.raises(ValueError, match="too large"):
-        explain(before, cell, agent)
+        explain(before, cell)
 
 
 def test_the_lines_are_those_of_the_running_code(case):

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("optuna")
 
 from ai.sweep.plan import Point
-from ai.sweep.search import LEAST, Proposals
+from ai.sweep.search import JOURNAL, LEAST, Proposals
 from ai.sweep.study import FinishedTrial, SeedResult, Study
 from tests.support.studies import tiny_plan
 
@@ -122,3 +122,15 @@ def test_the_knob_that_decides_matters_most_and_too_few_trials_say_nothing(tmp_p
         shares = search.importance()
         assert next(iter(shares), None) == best, count
         assert sum(shares.values()) == pytest.approx(1.0 if best else 0.0)
+
+
+def test_optunas_own_tools_read_the_journal_and_we_do_not(study):
+    import optuna
+
+    journal = study.folder / JOURNAL
+    journal.write_text('{"op_code": 99}\nno line of a journal')
+    Proposals(Study.load(study.folder)).next()
+    storage = optuna.storages.JournalStorage(optuna.storages.journal.JournalFileBackend(str(journal)))
+    done, begun = optuna.load_study(study_name=study.folder.name, storage=storage).trials
+    assert (done.value, begun.state.name) == (5.0, "RUNNING")
+    assert done.params["tau"] == study.trials[0].params["tau"]

@@ -13,7 +13,7 @@ from game.ui.context import Context
 from game.ui.virtual_pointer import PictureRow
 from tests.support.chores import biased_fix
 from tests.support.driver import Driver
-from tests.support.pen import draw, guess, pad_of, strokes
+from tests.support.pen import draw, guess, strokes
 from tests.support.player import DEVICES, Player
 
 Open = Callable[..., Driver]
@@ -59,7 +59,7 @@ def test_the_guess_follows_every_event_without_a_frame_in_between(drawing: Drive
 def test_the_drawing_area_is_given_in_pixels_of_the_window(drawing: Driver):
     for size, scale in (((1280, 720), 1.0), ((900, 760), 1.0), ((2560, 1440), 2.0)):
         drawing.resize(size)
-        left, top, width, height = pad_of(drawing)
+        left, top, width, height = scene(drawing).canvas_rect
         assert (left, top) == pytest.approx([scale * each for each in scene(drawing).pad.rect.topleft], abs=1)
         assert width == height == pytest.approx(scale * scene(drawing).pad.rect.width, abs=1)
         drawing.post(pygame.MOUSEBUTTONDOWN, pos=(left + 5, top + 5), button=1)

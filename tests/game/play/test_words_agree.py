@@ -222,7 +222,7 @@ def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, conte
 
 
 def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context, monkeypatch):
-    for helped in (False, True):
+    for helped in (True, False):
         reading = begin(open_game, context, monkeypatch, "free", {"assist": 0.5 * helped})
         reading.driver.key(pygame.K_c)
         words = " ".join(reading.page(2).words)

@@ -16,6 +16,7 @@ from game.input.bindings import KEYBOARD, Bindings, Command, Held
 from game.input.controls import Controls, key_name
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.background import LOADER
+from game.scenes.play import scene as play_scene
 from game.scenes.play.scene import PlayScene
 from game.ui.actions import Action, Table
 from tests.game.tour.stops import Stop
@@ -213,15 +214,16 @@ class Recorder:
 
     def __init__(self, scene: object, patch: pytest.MonkeyPatch) -> None:
         self.ran: list[Command | int] = []
-        for name in ("actions", "_flight_actions", "_card_actions"):  # a flight has a table for each row of hints
-            if table := getattr(scene, name, None):
-                patch.setattr(scene, name, partial(self._noting, table))
+        # A flight has a table for each row of hints.
+        for owner, name in ((scene, "actions"), (scene, "_card_actions"), (play_scene, "flight_actions")):
+            if table := getattr(owner, name, None):
+                patch.setattr(owner, name, partial(self._noting, table))
         patch.setattr(scene, "update", lambda: None)
 
-    def _noting(self, table: Callable[[], Table]) -> Table:
+    def _noting(self, table: Callable[..., Table], *given: object) -> Table:
         return [
             replace(entry, run=partial(self.ran.append, entry.key)) if isinstance(entry, Action) else entry
-            for entry in table()
+            for entry in table(*given)
         ]
 
     def take(self) -> list[Command | int]:
