@@ -15,6 +15,7 @@ from ai.agent.agent import DeepQAgent
 from ai.cli.command_line import configured, stoppable
 from ai.training.config import PRESETS
 from ai.training.loop import Training
+from ai.training.messages import Saved
 from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
 from main import main
 
@@ -173,6 +174,14 @@ def test_seconds_are_of_the_whole_run_too(tmp_path, capsys):
 
 def full(*_, **__):
     raise OSError(28, "No space left on device")
+
+
+def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
+    failures = [[Saved(tmp_path / "run", "No space left on device")]]
+    monkeypatch.setattr(ai.training.run.Keeper, "go_on", lambda keeper, now: failures.pop() if failures else [])
+    assert main(["train", "--decisions", "240", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]) == 0
+    assert capsys.readouterr().err.count("No space left on device; training goes on") == 1
+    assert DeepQAgent.load(tmp_path / "run" / "last").decisions == 240
 
 
 @pytest.mark.parametrize("trouble", ["full", "not finite", "best"])

@@ -69,6 +69,23 @@ def test_a_study_reads_what_it_wrote(study, made):
     assert (study.folder / summary["run"] / "online").is_dir()
 
 
+def test_a_full_disk_keeps_no_half_of_a_trial_and_the_next_record_succeeds(study, made, monkeypatch):
+    result = replace(made.trials[0], number=2)
+
+    def full(files, folder):
+        write_files(files, folder)
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("ai.sweep.study.write_files", full)
+    with pytest.raises(OSError, match="No space"):
+        study.record(result, {"seed-0/config.json": b"{}"})
+    monkeypatch.undo()
+    assert sorted(Study.load(study.folder).trials) == sorted(study.trials) == [0, 1]
+    assert not list((study.folder / "trials").glob(".*"))
+    study.record(result, {})
+    assert Study.load(study.folder).trials[2] == result
+
+
 def test_what_a_kill_leaves_half_written_is_no_trial_and_is_cleared_away(study):
     half = study.folder / "trials" / ".0002.0123abcd.new"
     half.mkdir()

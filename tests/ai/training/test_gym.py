@@ -143,3 +143,29 @@ class TestOurLanderForOthers:
             assert np.array_equal(first, flight(other, 11)[0])
         assert not np.array_equal(first[:9], flight(env, 12)[0][:9])
         assert info == {"outcome": 3, "is_success": False}
+
+
+class Calm:
+    """Generator whose every uniform number is the middle of its range: flat ground, no push, no noise of engines."""
+
+    def uniform(self, low=0.0, high=1.0, size=None):
+        return (low + high) / 2 if size is None else np.full(size, (low + high) / 2)
+
+
+@pytest.mark.slow
+def test_lunar_lander_looks_the_same_in_a_mirror():
+    gymnasium = pytest.importorskip("gymnasium")
+    pytest.importorskip("Box2D")
+    mirror = GymTask(gym_config("LunarLander-v3")).symmetry
+    here, there = (gymnasium.make("LunarLander-v3").unwrapped for _ in range(2))
+    for env in (here, there):
+        env.reset(seed=0)
+        env._np_random = Calm()
+        env.reset()
+    rng = np.random.default_rng(0)
+    for _ in range(80):
+        action = int(rng.choice(4, p=[0.3, 0.2, 0.3, 0.2]))  # more to the one side than to the other
+        one, other = here.step(action), there.step(int(mirror.actions[action]))
+        assert mirror.mirrored(one[0]) == pytest.approx(other[0], abs=0.01)
+        assert one[1] == pytest.approx(other[1], abs=0.05)
+    assert abs(one[0][4]) > 0.1, "it has turned: the test is not of a lander that falls straight"

@@ -14,6 +14,7 @@ from ai.training.edits import EDITED
 from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, returns
 from ai.training.history import Checkpoint, History, Point, SettingChange
+from ai.training.loop import Training
 
 MODERN = PRESETS["modern"]
 NAN = float("nan")
@@ -278,3 +279,19 @@ def test_another_run_begins_without_the_past():
     assert adviser.shown
     assert adviser.advise(history(points(), points=3, seconds=0.3), MODERN) is None
     assert adviser.advise(History(), MODERN) is None
+
+
+# A real run, a short one
+
+
+@pytest.mark.slow
+def test_nothing_is_said_of_a_run_that_starts_well():
+    config = MODERN.changed(gradient_steps=1)
+    training, run, adviser = Training(config, evaluate_every=0), History(), Adviser(config)
+    while training.agent.decisions < 30_000:
+        progress = training.advance()
+        run.append(Point(
+            progress.decisions / 1_000, progress.decisions, progress.episodes, progress.success_rate,
+            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, 0.0, *progress.shares[1:],
+        ))  # fmt: skip
+        assert adviser.advise(run, config) is None, progress.decisions

@@ -19,6 +19,7 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
 from tests.support.reading import Weighs
+from tests.support.screens import opened, save_settings
 from tests.support.written import words_written
 
 COAST, LEFT, RIGHT, MAIN = range(4)
@@ -275,3 +276,14 @@ def test_choices_are_made_and_the_waiting_flight_follows(open_game: Open, contex
     assert play(driver).waiting
     assert len(play(driver).flight.env.ground.pads) == 3
     assert play(driver).challenge.hands == "laggy"
+
+
+def test_words_that_nobody_knows_in_the_settings_fly_as_usual(open_game: Open, context: Context):
+    save_settings(context, hands="three", copilot="captain", text_size="enormous", assist=0.5)
+    driver = opened(open_game, "Play")
+    driver.key(pygame.K_UP)
+    driver.frames(10)
+    assert (play(driver).challenge.hands, play(driver).flight.copilot.mode) == (OWN, Mode.TOLERANCE)
+    assert driver.app.canvas.zoom == 1.0
+    driver.key(pygame.K_c)
+    assert driver.top_name == "ChoicesScene"

@@ -2,6 +2,7 @@ import errno
 import json
 import os
 import shutil
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -244,6 +245,19 @@ def test_what_was_deleted_comes_back_the_latest_first(library: Library):
     assert library.undo_delete() is None
     assert library.last_deleted == ""
     assert names(library) == ["one", "two"]
+
+
+def test_what_was_just_deleted_comes_back_although_the_clock_was_set_back(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+):
+    clock = iter((2 * 10**18, 10**18, 10**9))
+    monkeypatch.setattr(time, "time_ns", lambda: next(clock))
+    for name in ("one", "two", "three"):
+        add(library, name)
+        library.delete(name)
+        assert library.last_deleted == name
+    assert library.undo_delete()
+    assert names(library) == ["three"]
 
 
 def test_an_undo_beside_a_newer_run_of_that_name_keeps_both(library: Library):

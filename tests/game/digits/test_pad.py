@@ -119,6 +119,13 @@ def test_leaving_the_pad_draws_nothing_outside_and_no_line_back(pad: DrawingPad)
     assert pad.empty
 
 
+def test_losing_the_window_ends_the_stroke(pad: DrawingPad):
+    mouse(pad, pygame.MOUSEBUTTONDOWN, (100, 100))
+    pad.handle_event(pygame.event.Event(pygame.WINDOWFOCUSLOST))
+    mouse(pad, pygame.MOUSEMOTION, (300, 300))
+    assert len(pad.strokes[0]) == 1
+
+
 def test_the_window_shows_the_drawing_at_any_size(pad: DrawingPad):
     drag(pad, (100, 100), (150, 130), (170, 200), (140, 260), (300, 300))
     for size, scale in (((1280, 720), 1.0), ((640, 360), 0.5), ((1280, 720), 1.0)):

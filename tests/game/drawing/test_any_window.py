@@ -18,8 +18,9 @@ from game.scenes.menus.settings import SettingsScene
 from game.ui.context import Context
 from game.world.camera import LAND_REACH, WIDEST, Camera, CameraTarget
 from game.world.landscape.backdrop import Backdrop
+from game.world.stage import Stage
 from tests.support.driver import Driver
-from tests.support.screens import opened, save_settings
+from tests.support.screens import crashed, opened, save_settings
 from tests.support.written import Written
 
 SHAPES = [(1290, 430), (640, 1280), (800, 800)]  # three to one, one to two, square
@@ -98,6 +99,18 @@ def test_a_stopped_lander_is_dragged_where_it_is_seen(open_game, context: Contex
     moved = watch.swarm.env.position[0]
     assert moved[0] < x - 0.5
     assert moved[1] == pytest.approx(y, abs=0.2)
+
+
+def test_a_wreck_is_on_the_picture(open_game, context: Context, monkeypatch: pytest.MonkeyPatch):
+    save_settings(context)
+    driver, pictures = opened(open_game, "Play"), []
+    reshape(driver, SHAPES[1])
+    crashed(driver)
+    for draw in (Stage._draw_wreck, lambda *_: None):
+        monkeypatch.setattr(Stage, "_draw_wreck", draw)
+        driver.frames()
+        pictures.append(pygame.surfarray.array2d(driver.app.canvas.surface))
+    assert (pictures[0] != pictures[1]).sum() > 500
 
 
 def test_a_window_too_small_to_read_grows_again(open_game):

@@ -1,4 +1,5 @@
 import json
+import os
 from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
@@ -121,6 +122,27 @@ def test_damaged_lines_of_the_logbook_are_counted_and_the_rest_is_read(kept: Rec
     kept.keep(fly(), NOON + 1)
     assert [line.when for line in kept.entries()] == [NOON, NOON + 1]
     assert "5 lines" in kept.problem
+
+
+def test_of_a_huge_logbook_the_end_is_read(kept: Records):
+    kept.keep(fly(), NOON)
+    line = kept.logbook.read_bytes()
+    with kept.logbook.open("wb") as file:
+        file.truncate(300_000_000)
+        file.seek(0, os.SEEK_END)
+        file.write(b"\n" + line)
+    assert [each.when for each in kept.entries()] == [NOON]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")
+def test_a_pipe_in_place_of_a_flight_or_the_logbook_is_named(kept: Records):
+    kept.folder.mkdir(parents=True)
+    os.mkfifo(kept.folder / "a.json")
+    os.mkfifo(kept.logbook)
+    with pytest.raises(ValueError, match=r"a\.json"):
+        kept.read("a.json")
+    assert kept.entries() == []
+    assert "logbook" in kept.problem
 
 
 def test_a_line_cannot_lead_out_of_the_folder():

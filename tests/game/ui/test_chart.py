@@ -228,6 +228,15 @@ def test_the_same_numbers_are_not_drawn_again(canvas: Canvas) -> None:
         assert chart.redraws > redraws
 
 
+def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:
+    chart = chart_of(np.arange(20.0))
+    chart.draw(canvas)
+    canvas.attach(pygame.Surface((1920, 1080)))
+    redraws = chart.redraws
+    chart.draw(canvas)
+    assert chart.redraws == redraws + 1
+
+
 def test_runs_behind_follow_the_axes(drawn: Callable[[Chart], np.ndarray]) -> None:
     x = np.linspace(0.0, 20.0, 50)
     runs = [Series(x, x / 40, "this run"), Series(x, 1 - x / 40, "before", *RUN_STYLES[1])]
