@@ -85,7 +85,7 @@ class RunsChapter(Chapter):
     def start(self) -> None:
         """Start the runs with the choice as it is now, from another seed each time."""
         self._forget()
-        self.flown = self.choice
+        self.flown, self.tried = self.choice, False
         self._worker = Worker(small_runs, tuple(self.configs()), self.seed, self.plan)
         self._worker.set_pace(PACE)
         self.seed += 1
