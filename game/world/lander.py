@@ -190,7 +190,7 @@ def turned(
 def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[tuple[pygame.Surface, tuple[int, int]]]:
     """Return a swarm ready to be blitted: angles (n,), centres of mass (n, 2) in pixels."""
     degrees = np.rint(np.degrees(angles) / 5).astype(int) * 5 % 360
-    half = painted(pixels_per_metre, 0, (0, 0)).get_width() // 2
+    half = painted(pixels_per_metre, 0, (0, 0), LANDER).get_width() // 2
     corners = np.rint(middles - half).astype(int).tolist()
     return [
         (_packed(pixels_per_metre, turn), (left, top))
