@@ -104,11 +104,6 @@ class Chart:
         plot = self.plot
         return pygame.FRect(plot.right + _MARGIN, plot.top - 8, _GUTTER - _MARGIN, plot.height + 8 + _FOOT)
 
-    @property
-    def latest(self) -> str:
-        """The latest value of the current run, as it is written; a dash before any."""
-        return self._latest(self.runs[0]) if self.runs else "–"
-
     def _latest(self, run: Series) -> str:
         value = run.last()
         return "–" if value is None else self.read(value)

@@ -106,7 +106,8 @@ class Landers:
             return
         self.shown.draw(canvas, alpha, paused=paused)
         if self._moment is not None and self._rewind.swarm_state is None:
-            canvas.text(texts.REWIND_NO_LANDERS, self.box.center, size=SMALL, colour=MUTE, align="centre")
+            place = self.box.centerx, self.box.bottom - 14  # below the title, in a small window, too
+            canvas.text(texts.REWIND_NO_LANDERS, place, size=SMALL, colour=MUTE, align="centre")
 
     def _draw_pair(self, canvas: Canvas, alpha: float, paused: bool, landed: Sequence[str]) -> None:
         box = self._halves
