@@ -7,12 +7,12 @@ import numpy as np
 
 import engine
 from ai import digits, nn
-from ai.agent.agent import DeepQAgent
-from ai.agent.replay import MemoryCell
-from ai.copilot.copilot import CoPilot
-from ai.digits.classifier import DigitClassifier
+from ai.agent import DeepQAgent, MemoryCell
+from ai.copilot import CoPilot
+from ai.digits import DigitClassifier
 from ai.environment import StepResult
-from ai.lander.environment import LanderEnv, Outcome
+from ai.lander import LanderEnv, Outcome
+from ai.lander.pilots import LaggyPilot, NoisyPilot, NoPilot, SensorPilot
 from ai.training.config import PRESETS
 from ai.training.loop import Progress
 from game.core.scene import Pop, Push, Quit, Replace, Scene
@@ -61,6 +61,12 @@ def test_lander():
     assert isinstance(result, StepResult)
     for name in ("observation", "reward", "terminated", "truncated", "outcome"):
         assert len(getattr(result, name)) == 2, name
+
+
+def test_pilots():
+    for pilot in (LaggyPilot, NoisyPilot, SensorPilot):
+        assert begin_with(pilot.act, "observation"), pilot
+    assert not NoPilot().act(np.zeros((3, 9), np.float32)).any()
 
 
 def test_agent():

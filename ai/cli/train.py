@@ -38,7 +38,7 @@ def add_commands(commands: Any) -> None:
     add("--decisions", type=int, help="stop when the whole run, resumed or not, has taken so many decisions")
     add("--validation", type=int, metavar="N", help="episodes that choose the best network")
     add = read.add_argument
-    add("--preset", help="modern, classic, as-described, or thorough, which made what is shipped (default: modern)")
+    add("--preset", help="modern, classic, as-described, or thorough, as the shipped modern one (default: modern)")
     add("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
     for command, run, example in ((land, _train, "n_step=5"), (read, _train_digits, "dropout=0.5")):
         add = command.add_argument

@@ -116,3 +116,11 @@ class SensorPilot:
         """Actions (n,) for observations (n, 9)."""
         x = np.atleast_2d(observation)[:, 0] / OBSERVATION_SCALE[0]
         return np.where(x > MARGIN, 1, np.where(x < -MARGIN, 2, 0)).astype(np.intp)
+
+
+class NoPilot:
+    """Pilot that never fires an engine."""
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
+        """Actions (n,) for observations (n, 9)."""
+        return np.zeros(len(np.atleast_2d(observation)), dtype=np.intp)

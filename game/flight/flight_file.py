@@ -177,9 +177,10 @@ def write(path: Path, record: Record) -> None:
 def to_text(record: Record) -> str:
     """Return a record as the text of a flight's file."""
     recording = record.recording
-    saved = {"format": FORMAT, "version": VERSION} | recording.start()
-    saved |= {"actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands)}
-    saved |= {"shares": _packed_shares(recording), "end": record.end, "entry": asdict(record.entry)}
+    saved = {"format": FORMAT, "version": VERSION} | recording.start() | {
+        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
+        "shares": _packed_shares(recording), "end": record.end, "entry": asdict(record.entry),
+    }  # fmt: skip
     return json.dumps(saved, indent=1) + "\n"
 
 

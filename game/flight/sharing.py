@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 
@@ -40,9 +40,10 @@ def record_of(flight: SharedFlight, when: float) -> Record:
     recording, claim = flight.recording, flight.claim
     seconds = len(recording.actions) * DT
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
-    entry = Entry(when, claim.outcome.name, seconds, 0.0, 0.0, round(by_hand, 4), pads=recording.pads)
-    rules = flight_file.rules_of(recording.mission)
-    entry = replace(entry, score=claim.points, course=flight.course, barred=flight.barred, rules=rules)
+    entry = Entry(
+        when, claim.outcome.name, seconds, 0.0, 0.0, round(by_hand, 4), pads=recording.pads, score=claim.points,
+        course=flight.course, barred=flight.barred, rules=flight_file.rules_of(recording.mission),
+    )  # fmt: skip
     return Record(recording, entry, claim.end)
 
 

@@ -48,7 +48,7 @@ class KnobDescription:
     live: bool  # whether it may change during a run
     kind: KnobKind
     stops: tuple[Any, ...]  # its possible values, from left to right on its track, or those of its words
-    advice: tuple[str, ...] = ()  # what comes of too little and of too much of it, and what to watch; for some
+    advice: tuple[str, ...] = ()  # what comes of too little and of too much of it; for some
 
     @property
     def name(self) -> str:

@@ -16,9 +16,12 @@ from game.drawing.tokens import INK, NIGHT0, SMALL
 from game.flight.flight import Flight
 from game.flight.outcomes import crash_reason
 from game.world.camera import View
+from game.world.craft import foot_place
+from game.world.stage import light_pool
 
 _CONTACT: Final = (14, 80, 46)  # steps in which the word comes, stays and goes
 _REASON: Final = (6, 200, 20)
+_GLOW: Final = 110  # steps that the light on the deck takes to spread and fade
 _ABOVE: Final = 2.0  # metres from the middle of a craft to the words
 _EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
 _HEAD, _FOOT = 96.0, 120.0  # points that words keep from the upper edge, and from the lower one
@@ -35,7 +38,7 @@ _EASE: Final = 0.08  # share of the remaining difference, per step
 class Callouts:
     """Callouts of one flight; call `follow` once after every step.
 
-    While `calm` (reduced motion), words appear at once.
+    While `calm` (reduced motion), words appear at once, and without light.
     """
 
     def __init__(self, env: LanderEnv, reduced_motion: bool = False) -> None:
@@ -61,6 +64,22 @@ class Callouts:
         if crashed and not self._was_over:
             self._crash, self._contact = 0, -1
         self._was_down, self._was_over = down, bool(env.outcome[0] != Outcome.FLYING)
+
+    def draw_light(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Draw light that runs along the deck from both feet; with reduced motion, nothing."""
+        if not 0 <= self._contact < _GLOW or self.calm:
+            return
+        gone = self._contact / _GLOW
+        x, y, angle = pose.tolist()
+        reach = (0.9 + 2.4 * (1 - (1 - gone) ** 3)) * view.pixels_per_metre
+        level = math.ceil(30 * (1 - gone) ** 1.3)
+        light = pygame.transform.smoothscale(light_pool(level, INK), (2 * round(reach), round(0.22 * reach) + 6))
+        for side in (-1, 1):
+            foot = foot_place(x, y, angle, side)
+            at_x, at_y = view.pixel(*foot)
+            corner = (round(at_x - light.get_width() / 2), round(at_y - light.get_height() / 2))
+            canvas.surface.blit(light, corner, special_flags=pygame.BLEND_RGB_ADD)
+            canvas.glow(view.point(*foot), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
 
     def draw_words(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Write what has happened above the craft."""

@@ -190,7 +190,7 @@ def turned(
 def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[tuple[pygame.Surface, tuple[int, int]]]:
     """Return a swarm ready to be blitted: angles (n,), centres of mass (n, 2) in pixels."""
     degrees = np.rint(np.degrees(angles) / 5).astype(int) * 5 % 360
-    half = painted(pixels_per_metre, 0, (0, 0)).get_width() // 2
+    half = painted(pixels_per_metre, 0, (0, 0), LANDER).get_width() // 2
     corners = np.rint(middles - half).astype(int).tolist()
     return [
         (_packed(pixels_per_metre, turn), (left, top))
@@ -201,13 +201,13 @@ def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[
 @lru_cache(maxsize=512)
 def _packed(pixels_per_metre: float, degrees: int) -> pygame.Surface:
     """Return the lander, run-length encoded (RLE): there are hundreds to draw, and RLE makes clear pixels free."""
-    picture = painted(pixels_per_metre, degrees, (0, 0)).copy()
+    picture = painted(pixels_per_metre, degrees, (0, 0), LANDER).copy()
     picture.set_alpha(255, pygame.RLEACCEL)
     return picture
 
 
 @lru_cache(maxsize=256)  # a seventh of a megabyte each, and more in a large window
-def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str = LANDER) -> pygame.Surface:
+def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str) -> pygame.Surface:
     """Return a picture at a size and angle, its middle moved right and down by 0 or 1 `halves` of a pixel."""
     finish = PICTURES[image]
     half = math.ceil(REACH * pixels_per_metre) + 2
@@ -236,8 +236,8 @@ def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], imag
 def _strut(sheet: pygame.Surface, colour: Colour, start: Corner, end: Corner, width: float) -> None:
     along = math.hypot(end[0] - start[0], end[1] - start[1]) or 1.0
     x, y = (end[1] - start[1]) / along * width / 2, (start[0] - end[0]) / along * width / 2
-    one, other = [(start[0] + x, start[1] + y), (end[0] + x, end[1] + y)], [(end[0] - x, end[1] - y)]
-    pygame.draw.polygon(sheet, colour, [*one, *other, (start[0] - x, start[1] - y)])
+    corners = [(start[0] + x, start[1] + y), (end[0] + x, end[1] + y), (end[0] - x, end[1] - y)]
+    pygame.draw.polygon(sheet, colour, [*corners, (start[0] - x, start[1] - y)])
 
 
 def _lit(turn: float, share: float) -> list[Colour]:

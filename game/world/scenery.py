@@ -142,6 +142,7 @@ class Scenery:
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
+        self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
         self.stage.draw_dust(canvas, view, alpha)
         shown = self.stage.pose_after(alpha)

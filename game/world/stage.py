@@ -32,6 +32,7 @@ _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
+_SAGS: Final = (0.35, 0.30)  # metres and radians by which an upright wreck sinks onto its hull
 _WRECK_DETAIL: Final = 0.6  # resolution of a wreck, of what the closest view would need
 
 
@@ -189,15 +190,18 @@ class Stage:
         self._draw_ground_light(canvas, view, x, y, angle, slot)
         floor = view.pixel(x, surface_height(self._env, x))[1] + 2
         if sprite.image == art.WRECK:
-            self._draw_wreck(canvas, view, sprite, pose)
+            self._draw_wreck(canvas, view, sprite, pose, slot)
         else:
             fire = self.thrust[slot], float(self.blue[slot]), self._flicker
             draw_craft(canvas, view, sprite.image, pose, *fire, art.share(sprite), floor, self._light)
         self._draw_flash(canvas, view, x, y, slot)
 
-    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles) -> None:
-        """Draw the dark wreck of a crash."""
+    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
+        """Draw the dark wreck of a crash; one that does not tumble sags to the side of its broken leg."""
         x, y, angle = pose.tolist()
+        if self._after is None:
+            sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
+            y, angle = y - _SAGS[0] * sag * max(0.0, math.cos(angle)), angle - _SAGS[1] * sag
         size = art.share(sprite)
         middle = view.pixel(*stand(x, y, angle, size))
         # A new picture for each degree that it tumbles, none of them seen from as near as a craft in flight.
@@ -245,7 +249,7 @@ class Stage:
             colour = mix(HUMAN, NET, round(float(self.blue[slot]) * 4) / 4)
             metre = view.pixels_per_metre
             size = (2 * round((2.0 + 0.25 * reach) * metre), 2 * round(0.42 * metre))
-            pool = pygame.transform.smoothscale(_light_pool(level, colour), size)
+            pool = pygame.transform.smoothscale(light_pool(level, colour), size)
             _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
@@ -276,12 +280,12 @@ def _shade(level: int) -> pygame.Surface:
 
 
 @lru_cache(maxsize=128)
-def _light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
+def light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
     """Return a disc of light, to be squeezed flat and added; `level` is in 1/12."""
     pool = _white_pool().copy()
     pool.fill([round(part * min(level, 12) / 12) for part in colour], special_flags=pygame.BLEND_RGB_MULT)
     if level > 12:
-        pool.blit(_light_pool(level - 12, colour), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
+        pool.blit(light_pool(level - 12, colour), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
     return pool
 
 

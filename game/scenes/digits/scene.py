@@ -205,7 +205,9 @@ class DigitsScene(PanelScene):
         box = cursor.take(size)
         if cursor.canvas and why is not None:
             self._why.draw(cursor.canvas, (box.left, box.top, size, size), why.tobytes(), partial(_paint, why))
-        write_legend(cursor, zip(texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), strict=True) if drawn else ())
+        write_legend(
+            cursor, zip(texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), strict=True) if drawn and why is not None else ()
+        )
 
     def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
         taken = (True, *asdict(self.live.switches).values())

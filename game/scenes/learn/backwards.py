@@ -103,7 +103,7 @@ class BackwardsChapter(Chapter):
     def another(self) -> None:
         """Show the next digit that the shipped network misreads."""
         self._digit += 1
-        self.changed = True
+        self.changed, self.tried = True, False
         self._begin()
 
     def _look(self) -> None:
@@ -141,7 +141,7 @@ class BackwardsChapter(Chapter):
             label=self.label, read=self.read_as, before=percent(self.before), after=percent(self.odds[self.label]),
             steps=self.steps, moved=self.moved, share=percent(self.moved / self.network.values.size),
             count=self.network.values.size, right=self._right_before, now=self._right(),
-        ) if self.steps else texts.LEARN_BACKWARDS_AGAIN  # fmt: skip
+        )  # fmt: skip
 
     def code(self) -> Sequence[Code]:
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])

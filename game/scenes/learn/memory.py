@@ -21,7 +21,7 @@ from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, NIGHT0, NIGHT1, SMALL
 from game.explain.figures import percent
 from game.scenes.learn.chapter import Code
-from game.scenes.learn.runs import RunsChapter, draw_row
+from game.scenes.learn.runs import RunsChapter, draw_side_by_side
 from game.ui.panel import Column
 
 KINDS: Final = ("even", "surprising", "latest")
@@ -135,7 +135,7 @@ class MemoryChapter(RunsChapter):
             area = pygame.FRect(box.left + side * (half + 32), top, half, box.bottom - top)
             canvas.text(name, (area.left, top - 6), size=SMALL, colour=(NET, INK)[side], room=half)
             flown = None if state is None else state.tested if side else state.flown
-            draw_row(canvas, area, flown, len(self.states), count)
+            draw_side_by_side(canvas, area, flown, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
             if share is not None:
                 words = texts.LEARN_RUNS_LANDED.format(share=percent(share))

@@ -258,6 +258,7 @@ class ChoiceChapter(MomentChapter):
         super().restart()
 
     def turn(self) -> None:
+        self.tried = False
         self.results.clear()
         super().turn()
 

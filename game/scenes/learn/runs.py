@@ -85,7 +85,7 @@ class RunsChapter(Chapter):
     def start(self) -> None:
         """Start the runs with the choice as it is now, from another seed each time."""
         self._forget()
-        self.flown = self.choice
+        self.flown, self.tried = self.choice, False
         self._worker = Worker(small_runs, tuple(self.configs()), self.seed, self.plan)
         self._worker.set_pace(PACE)
         self.seed += 1
@@ -145,7 +145,7 @@ class RunsChapter(Chapter):
         return self.fault or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
 
 
-def draw_row(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:
+def draw_side_by_side(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:
     """Draw one-engine landers side by side; only the ground before they fly."""
     metres = _APART * (count + 0.6)
     height = metres * box.height / box.width
@@ -219,7 +219,7 @@ class DuelChapter(RunsChapter):
             canvas.text(self.name(run, shown), (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
             sky = pygame.FRect(left, box.top + 22, half, 0.36 * box.height)
             state = self.states[-1][run] if self.states else None
-            draw_row(canvas, sky, state.flown if state else None, len(self.states))
+            draw_side_by_side(canvas, sky, state.flown if state else None, len(self.states))
             chart = pygame.FRect(left + 72, sky.bottom + 34, half - 72, box.bottom - sky.bottom - 44)
             self.draw_scale(canvas, chart)
             if state:

@@ -71,10 +71,10 @@ class LogbookScene(PanelScene):
         self.items: list[Entry] = self._shown
         index = self.items.index(self.chosen) if self.chosen in self.items else 0
         self.chosen = self.items[index] if self.items else None
-        rows, watch, none = [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY
         self._list = left.listing(
-            rows, watch, none, index=index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1
-        )
+            [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY,
+            index=index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
+        )  # fmt: skip
         left.button(texts.CODE_PASTE, partial(paste, self.context))
         self.form.focus(self._list)
         self._describe_chosen(self._beside)

@@ -70,8 +70,11 @@ class SettingsScene(PanelScene):
         panel.line()
         panel.gap(12)
         left, right = panel.beside((1, 1), _LEAST)
-        groups = self._describe_picture, self._describe_sound, self._describe_controls, self._describe_flights
-        groups[GROUPS_OF_SETTINGS.index(self.group)](left, right)
+        groups = {
+            "picture": self._describe_picture, "sound": self._describe_sound,
+            "controls": self._describe_controls, "flights": self._describe_flights,
+        }  # fmt: skip
+        groups[self.group](left, right)
 
     def update(self) -> Transition | None:
         for name in ("full_screen", "muted"):

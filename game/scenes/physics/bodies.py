@@ -150,9 +150,11 @@ class _Layer:
         middles = view.pixels(poses[:, :2])
         colours = [shades(index, colours) for index, colours in self._discs]
         radii = [round(4 * radius * view.pixels_per_metre) / 4 for radius in self._radii]
-        discs = zip(radii, colours, strict=True)
+        discs = (
+            partial(_disc, radius, edge, fill, width) for radius, (edge, fill, _) in zip(radii, colours, strict=True)
+        )
         # To whole and half pixels only, which limits how many costly pictures are painted.
-        _stamp(canvas.surface, middles, (partial(_disc, radius, *pair[:2], width) for radius, pair in discs), 2)
+        _stamp(canvas.surface, middles, discs, 2)
         way = np.stack([np.cos(poses[:, 2]), -np.sin(poses[:, 2])], axis=1) * np.array(radii)[:, None]
         inner, outer = ((middles + share * way).tolist() for share in _MARK)
         for start, end, (_, _, mark) in zip(inner, outer, colours, strict=True):

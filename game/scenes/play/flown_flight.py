@@ -256,9 +256,12 @@ class FlownFlight:
         flight, credit, ending = self.flight, self.credit, self.ending
         ending.whole = self.scenery.shot_of(self.path.places)
         unranked = rung_of(flight) is not None or self.challenge.name
-        card, place = outcome_card(flight.env, flight.share), self.path.clear_place(ending.whole.view(1.0))
-        card = replace(card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason))
-        card = replace(card, assists=credit.assists, who=credit.who, place=place, compared=self._compared(self.best[1]))
+        card = outcome_card(flight.env, flight.share)
+        card = replace(
+            card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason),
+            assists=credit.assists, who=credit.who, place=self.path.clear_place(ending.whole.view(1.0)),
+            compared=self._compared(self.best[1]),
+        )  # fmt: skip
         if credit.helped:
             chance = None if card.good else self._last_chance
             while chance and not chance.known:

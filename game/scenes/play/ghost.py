@@ -107,7 +107,7 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
 @lru_cache(maxsize=192)
 def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
     """Return a translucent picture of the lander in shades of blue, with a bright outline."""
-    phantom = art.painted(pixels_per_metre, degrees, halves).copy()
+    phantom = art.painted(pixels_per_metre, degrees, halves, art.LANDER).copy()
     cover = pygame.surfarray.array_alpha(phantom)
     grown = cover.copy()
     sides = (

@@ -66,10 +66,10 @@ class MissionsScene(PanelScene):
         panel.title(texts.MISSIONS_TITLE)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
-        rows, first, fly = [self._row(name) for name in _NAMES], self._list.first if self._list else 0, self._fly
         self._list = left.listing(
-            rows, lambda _: fly(), around=_AROUND, index=self._index, first=first, on_choose=self._choose, pitch=_PITCH
-        )
+            [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, pitch=_PITCH,
+            index=self._index, first=self._list.first if self._list else 0, on_choose=self._choose,
+        )  # fmt: skip
         right.title(lambda: texts.MISSIONS[self.chosen][0], 28.0)
         right.text(lambda: texts.MISSIONS[self.chosen][1])
         right.gap(10)

@@ -155,8 +155,12 @@ class TrainingScene(FormScene, ABC):
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
-        words = {MORE: texts.TRAIN_MORE, INSIDE: texts.TRAIN_LOOK}
-        words |= {CHARTS: texts.TRAIN_MORE_CHARTS, KNOBS: texts.TRAIN_MORE_KNOBS}
+        words = {
+            MORE: texts.TRAIN_MORE,
+            CHARTS: texts.TRAIN_MORE_CHARTS,
+            KNOBS: texts.TRAIN_MORE_KNOBS,
+            INSIDE: texts.TRAIN_LOOK,
+        }
         column.button(words[name][self.opened(name)], partial(self.open, name)).pad = 3.0
 
     # Rows

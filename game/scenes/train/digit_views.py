@@ -15,12 +15,13 @@ from game.digits import certainty
 from game.digits.pictures import mosaic, picture, tiling
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
+from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.training.run import TrainingRun
 from game.ui.charts import Charts
-from game.ui.widget import Widget, mix
+from game.ui.widget import Widget
 
 _DIGITS: Final = 10
 _ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}

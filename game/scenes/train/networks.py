@@ -173,8 +173,8 @@ class NetworksScene(PanelScene):
         if run.resumable and not self._choose:
             verbs.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
         if self._is_own:
-            verbs += [(texts.RUN_RENAME, self._rename), (texts.RUN_EXPORT, self._export)]
-            verbs.append((texts.RUN_DELETE, self._delete))
+            verbs += [(texts.RUN_RENAME, self._rename), (texts.RUN_EXPORT, self._export),
+                      (texts.RUN_DELETE, self._delete)]  # fmt: skip
         return verbs
 
     def _choose_row(self, number: int) -> None:

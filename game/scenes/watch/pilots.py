@@ -121,7 +121,8 @@ class PilotsScene(PanelScene):
         lost = sorted(zip(mine.lost, texts.PILOTS_LOST, strict=False), reverse=True)
         if counts := " · ".join(words.format(count=count) for count, words in lost if count):
             column.aside(texts.PILOTS_LOST_BY.format(counts=counts))
-        column.text(texts.PILOTS_GOOD if mine.landed >= own.GOOD else "", size=SMALL, colour=HUMAN)
+        if mine.landed >= own.GOOD:
+            column.text(texts.PILOTS_GOOD, size=SMALL, colour=HUMAN)
         path = self._files[self._name]
         column.text(lambda: texts.PILOTS_STALE if mine.stale(path) else "", size=SMALL, colour=HUMAN)
         known = own.rivals(self._measured)

@@ -49,6 +49,15 @@ def test_live_knobs_are_taken_over_and_the_others_stay_and_held_out_images_are_n
         DigitTraining(SMALL.changed(held_out=600), data=data)
 
 
+def test_a_young_average_follows_faster(data):
+    training = DigitTraining(SMALL, data=data)
+    for step in (1, 2):
+        before, keep = training.average.copy(), step / (step + 10)
+        training.advance()
+        values = training.classifier.network.values
+        np.testing.assert_allclose(training.average, keep * before + (1 - keep) * values, atol=1e-6)
+
+
 def test_a_resumed_run_goes_on_as_if_it_had_never_stopped(data, tmp_path):
     config = SMALL.changed(dropout=0.3)
     whole, first = DigitTraining(config, 5, data), DigitTraining(config, 5, data)

@@ -7,7 +7,7 @@ import pytest
 
 from ai.agent.schedule import linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
-from ai.lander.pilots import ScriptedPilot
+from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training, run
 from ai.training.run import Limit, save
@@ -17,11 +17,6 @@ SMALL = PRESETS["modern"].changed(
     hidden=(16,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=2000, num_envs=8, spawn="near"
 )
 QUICK = {"evaluate_every": 0, "validation_episodes": 4}
-
-
-class NoPilot(ScriptedPilot):
-    def act(self, observation, held=None):
-        return np.zeros(len(observation), dtype=int)
 
 
 def advanced(config=SMALL, decisions=30, **options):

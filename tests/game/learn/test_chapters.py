@@ -488,7 +488,7 @@ def test_no_lander_is_cut_at_the_upper_edge(made: Made, monkeypatch: pytest.Monk
     canvas, box = Canvas(pygame.Surface((1280, 720))), pygame.FRect(400, 100, 500, 120)
     heights = np.arange(0.0, 30.0, 0.5)
     flown = Flight(heights, np.zeros(60), np.zeros(60, bool), np.zeros(60, np.intp))
-    runs_module.draw_row(canvas, box, flown, 0, count=60)
+    runs_module.draw_side_by_side(canvas, box, flown, 0, count=60)
     poses = np.stack([np.zeros(60), heights, np.zeros(60)], axis=1)
     view = pictures.view_in(box, (0.0, 5.0), 40.0, canvas.scale)
     pictures.draw_landers(canvas, box, view, poses, np.zeros(60, bool), 0)

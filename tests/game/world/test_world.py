@@ -65,7 +65,7 @@ def test_no_star_is_where_words_are(game: Driver):
 
 def test_the_art_fits_the_physics():
     scale = 64.0
-    craft = art.painted(scale, 0, (0, 0))
+    craft = art.painted(scale, 0, (0, 0), art.LANDER)
     cover = pygame.surfarray.array_alpha(craft) > 128
     middle = craft.get_width() // 2
     columns, rows = np.flatnonzero(cover.any(axis=1)), np.flatnonzero(cover.any(axis=0))
