@@ -137,6 +137,9 @@ def test_optunas_own_tools_read_the_journal_and_we_do_not(study):
     assert done.params["tau"] == study.trials[0].params["tau"]
 
 
+# The driver, on a stand-in for Ray
+
+
 def test_a_lost_worker_goes_on_from_its_checkpoint_and_is_given_up_after_some_tries(tmp_path, monkeypatch):
     driver, begun = pytest.importorskip("ai.sweep.driver"), []
     kept = finished(0, {}, 1.0, at=200), {"a": b"1"}
