@@ -17,6 +17,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import FIRST
 from game.core import texts
 from game.core.settings import Settings
+from game.explain.readouts import yours
 from game.flight.credit import GUARDIAN, Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import Policy, QPolicy, sentence, who
@@ -253,7 +254,9 @@ class Tutorial(Challenge):
         if card.stepped_in:
             title, reason = texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED
         elif self.lesson.guarded and flight.share < 1:
-            title, reason = texts.TUTORIAL_GOOD["land"], sentence(texts.TUTORIAL_HELPED, who(flight.network))
+            title = texts.TUTORIAL_GOOD["land"]
+            reason = texts.TUTORIAL_HELPED.format(who=who(flight.network), percent=100 - yours(flight.share))
+            card = replace(card, quality="")
         elif self.lesson.guarded:
             reason = texts.TUTORIAL_NOT_NEEDED
         return replace(card, title=title, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
