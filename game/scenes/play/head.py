@@ -224,7 +224,7 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     opening = challenge.opening
     if flown.begun:
         opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
-    keys = flight_hints(controls) if opening and said is None else []
+    keys = flight_hints(controls) if (opening or challenge.free) and said is None else []
     guided = [(texts.PATH_NETWORK.format(who=flown.credit.who), NET)] if flown.path_preview.asks else []
     paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
     return replace(head, sentence=said or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
@@ -237,6 +237,7 @@ def _asides(flown: FlownFlight) -> list[str]:
         texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
         credit.header if credit.alone and not flight.over else "",
         credit.notice or challenge.goal,
+        challenge.eased_line if credit.bar == "assists" and not (flown.begun or flight.over) else "",
         texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and challenge.goal and not flight.over else "",
         *surroundings(flight.env),
         *challenge.asides(flight),

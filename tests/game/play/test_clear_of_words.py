@@ -13,9 +13,9 @@ from game.core.scene import Push
 from game.drawing.canvas import Canvas
 from game.explain import explained
 from game.flight import networks
+from game.flight.credit import HELP
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.tooltip import draw_tooltip
