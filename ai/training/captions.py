@@ -121,6 +121,12 @@ def _loss_times(run: RecentCurves) -> float:
     return min(times, latest) if times > 1.0 else max(times, latest)
 
 
+def _below_peak(run: RecentCurves) -> bool:
+    """Whether the loss, larger than before, has fallen from its highest since."""
+    lately = max(run.now("loss"), run.last("loss"))
+    return _loss_times(run) > _LOSS_CHANGE and lately * _LOSS_CHANGE < run.highest("loss")
+
+
 def _most(column: str) -> Callable[[RecentCurves], bool]:
     return lambda run: run.now("success") == 0.0 and run.now(column) >= _MOST
 
@@ -187,6 +193,7 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
             _learning(lambda run: _loss_times(run) > _LOSS_CHANGE and _rises("success", _CHANGE)(run)),
             True,
         ),
+        CaptionRule("peaked", _learning(_below_peak)),
         CaptionRule("rises", _learning(lambda run: _loss_times(run) > _LOSS_CHANGE)),
         CaptionRule("falls", _learning(lambda run: _loss_times(run) < 1 / _LOSS_CHANGE), True),
         CaptionRule(
