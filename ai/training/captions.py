@@ -188,12 +188,12 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("held", _held),
         CaptionRule("waits", _stands),
         CaptionRule("explodes", _learning(_hint("loss_explodes"))),
+        CaptionRule("peaked", _learning(_below_peak)),
         CaptionRule(
             "news",
             _learning(lambda run: _loss_times(run) > _LOSS_CHANGE and _rises("success", _CHANGE)(run)),
             True,
         ),
-        CaptionRule("peaked", _learning(_below_peak)),
         CaptionRule("rises", _learning(lambda run: _loss_times(run) > _LOSS_CHANGE)),
         CaptionRule("falls", _learning(lambda run: _loss_times(run) < 1 / _LOSS_CHANGE), True),
         CaptionRule(
