@@ -121,6 +121,12 @@ def _loss_times(run: RecentCurves) -> float:
     return min(times, latest) if times > 1.0 else max(times, latest)
 
 
+def _below_peak(run: RecentCurves) -> bool:
+    """Whether the loss, larger than before, has fallen from its highest since."""
+    lately = max(run.now("loss"), run.last("loss"))
+    return _loss_times(run) > _LOSS_CHANGE and lately * _LOSS_CHANGE < run.highest("loss")
+
+
 def _most(column: str) -> Callable[[RecentCurves], bool]:
     return lambda run: run.now("success") == 0.0 and run.now(column) >= _MOST
 
@@ -182,6 +188,7 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("held", _held),
         CaptionRule("waits", _stands),
         CaptionRule("explodes", _learning(_hint("loss_explodes"))),
+        CaptionRule("peaked", _learning(_below_peak)),
         CaptionRule(
             "news",
             _learning(lambda run: _loss_times(run) > _LOSS_CHANGE and _rises("success", _CHANGE)(run)),

@@ -77,7 +77,8 @@ class Advice:
         back_to = self.adviser.shown.back_to
         remedy = self.adviser.apply(went_back=back_to is not None)
         went = [] if back_to is None else [texts.HINT_WENT_BACK.format(count=back_to)]
-        self.done = ", ".join([*([format_changes(remedy)] if remedy else []), *went])
+        goes_on = [texts.HINT_SET.format(what=format_changes(remedy))] if remedy else []
+        self.done = " ".join([*went, *goes_on])
         self._came_from = None if back_to is None else int(self._run.history["decisions"][-1])
         self._set(remedy, back_to)
 

@@ -86,7 +86,7 @@ def _held_out(history: History, _: str) -> Line:
 LANDER_CHARTS: Final = {
     "success": ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
     SCORE: ChartKind(
-        _column(SCORE), "{:.0f}", second=_expected, words=lambda: (texts.TRAIN_EXPECTED, texts.TRAIN_SCORES)
+        _column(SCORE), "{:z.0f}", second=_expected, words=lambda: (texts.TRAIN_EXPECTED, texts.TRAIN_SCORES)
     ),
     "loss": ChartKind(_column("loss"), "{:.3g}", log=True),
     "epsilon": ChartKind(_column("epsilon"), "{:.2f}", (0.0, 1.0), smooth=False),

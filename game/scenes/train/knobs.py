@@ -141,8 +141,8 @@ class KnobsPanel:
             column.choice("", tabs, self._page, self._turn_page, LABEL)
             page = self.pages[self._page]
             names = {name: name for name, each in self._descriptions.items() if each.page == page}
-        for name, called in names.items():
-            column.widget(self._knob(name)).label = self._descriptions[called].label
+        for name in names:
+            column.widget(self._knob(name))
         self.show()
 
     def describe_foot(self, column: Column) -> None:

@@ -34,6 +34,7 @@ from game.training.run_settings import KnobDescription, figure, label
 from game.ui.panel import Column
 
 FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
+_WAVERS: Final = 10  # percent by which one that has recovered may fall behind its twin
 
 
 class Chosen(NamedTuple):
@@ -74,6 +75,7 @@ class Laboratory:
         self.page: Literal["", "picks", "guess", "result"] = ""
         self.chosen: Chosen | None = None
         self.came: Verdict | None = None
+        self._recovered = False
         self.said = dict.fromkeys(("differs", "figures", "came", "why", "measured"), "")
 
     def open(self) -> None:
@@ -142,7 +144,7 @@ class Laboratory:
         self._begin(self.chosen._replace(guess=guess))
 
     def _begin(self, chosen: Chosen) -> None:
-        self.chosen, self.came = chosen, None
+        self.chosen, self.came, self._recovered = chosen, None, False
         self._start(chosen.experiment)
 
     def _guess(self, column: Column) -> None:
@@ -182,6 +184,9 @@ class Laboratory:
         column.words([(texts.LAB_KEEP_RUN, go_on), (texts.LAB_KEEP_EXPERIMENT, take), (texts.LAB_KNOBS, self.close)])
 
     def _sentence(self, subject: str) -> str:
+        if subject == "why" and self.chosen and self.said["why"]:
+            self._recovered = has_recovered(self._landed(), was=self._recovered)
+            return why(self.came, self.chosen.experiment.sabotage, recovered=self._recovered)
         return self.said[subject]
 
     def _figures(self) -> str:
@@ -199,9 +204,19 @@ def came_words(came: Verdict | None, guess: Verdict | None) -> str:
     return f"{texts.LAB_CAME_OF[came]} {texts.LAB_AS_GUESSED if came == guess else texts.LAB_NOT_AS_GUESSED}"
 
 
-def why(came: Verdict | None, sabotage: str) -> str:
-    """Say what the part is for that was taken away; empty where it was not missed."""
-    return texts.SABOTAGE_WHY[sabotage] if sabotage and came not in (None, "as_well") else ""
+def has_recovered(landed: Sequence[str], *, was: bool = False) -> bool:
+    """Whether an experiment lands as often as its twin by now, given both shares in percent; one that did may waver."""
+    if len(landed) < 2 or not all(map(str.isdigit, landed)):
+        return was
+    healthy, other = map(int, landed[:2])
+    return 0 < healthy <= other + (_WAVERS if was else 0)
+
+
+def why(came: Verdict | None, sabotage: str, *, recovered: bool = False) -> str:
+    """Say what the part is for that was taken away; no cause where it was not missed, or is missed no more."""
+    if not sabotage or came in (None, "as_well"):
+        return ""
+    return texts.LAB_RECOVERED if recovered else texts.SABOTAGE_WHY[sabotage]
 
 
 def experiment_word(experiment: Experiment, description: KnobDescription) -> str:

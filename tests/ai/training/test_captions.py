@@ -72,6 +72,19 @@ def test_a_curve_that_falls_again_is_not_said_to_rise(subtests: pytest.Subtests)
             assert (found.name if found else None) == name
 
 
+def test_a_loss_that_falls_from_its_peak_is_not_said_to_rise(subtests: pytest.Subtests):
+    """A knob was set to something absurd, and back."""
+    for last, name in ((10.0, "rises"), (2.0, "peaked"), (0.5, "falls")):
+        curve = np.interp(np.arange(300), (0, 250, 260, 299), (0.05, 0.05, 0.5, 0.05 * last))
+        with subtests.test(last=last):
+            history = History()
+            for row, loss in enumerate(curve.tolist()):
+                history.append(Point(seconds=row, decisions=1000.0 * row, episodes=10.0 * row, success=0.5,
+                                     mean_return=100.0, loss=loss, mean_q=0.7, epsilon=0.05, stage=0.0))  # fmt: skip
+            found = captions(RecentCurves(history, Config())).get("loss")
+            assert (found.name if found else None) == name
+
+
 @cache
 def seen(name: str) -> dict[str, list[str]]:
     """The captions that each chart of a recording had, in order, beside the hints that were shown."""

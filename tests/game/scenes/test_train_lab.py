@@ -19,7 +19,7 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import KNOBS
 from game.scenes.train.knob import Knob
-from game.scenes.train.laboratory import FILE, Chosen, came_words, measured, why
+from game.scenes.train.laboratory import FILE, Chosen, came_words, has_recovered, measured, why
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import AHEAD, TrainingRun
@@ -285,6 +285,13 @@ def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     for came in (None, *VERDICTS):
         assert bool(why(came, "no_replay")) == (came not in (None, "as_well")), came
         assert not why(came, "")
+    assert why("later", "no_replay", recovered=True) == texts.LAB_RECOVERED != why("later", "no_replay")
+    assert not why("as_well", "no_replay", recovered=True)
+    assert has_recovered(["91", "92"])
+    assert not has_recovered(["91", "90"])
+    assert has_recovered(["91", "90"], was=True), "no word comes and goes by chance"
+    assert not has_recovered(["91", "60"], was=True)
+    assert not has_recovered(["91", "–"])
     assert texts.LAB_NOT_AS_GUESSED in came_words("never", "later")
     assert texts.LAB_AS_GUESSED in came_words("never", "never")
 

@@ -56,6 +56,8 @@ def test_what_is_expected_is_drawn_and_said_in_points_whatever_networks_count_in
         np.testing.assert_allclose(expected.y, -80.0, rtol=1e-6)
         np.testing.assert_allclose(earned.y, 1.0)
         assert chart.caption == texts.TRAIN_SCORES.format(1, -80).replace("-", "−")
+    chart = looked(TrainingCharts(), run_of(PRESETS["modern"], -0.2)).charts[1]
+    assert chart.caption == texts.TRAIN_SCORES.format(1, 0), "no −0"
 
 
 def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
