@@ -110,6 +110,11 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     scene.turn_to(WHY)
     assert texts.LEARN_CAME[True] in written(driver, monkeypatch)
     shown = scene.chapter.why()
+    scene.turn_to(TRY)
+    driver.key(pygame.K_r)
+    assert not scene.chapter.tried
+    scene.turn_to(WHY)
+    assert shown in written(driver, monkeypatch), "begun anew, it says what the try before has shown"
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
     driver = open_game(ChapterScene, "neuron")
