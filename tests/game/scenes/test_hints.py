@@ -12,7 +12,6 @@ from game.input import signs
 from game.input.bindings import KEYBOARD, Bindings, Command
 from game.ui.context import Context
 from game.ui.hints import Hint, HintRow
-from game.ui.rows import ButtonRow, ToggleRow
 from tests.support.screens import SCREENS
 
 
@@ -35,17 +34,6 @@ def test_full_screen_is_switched_by_its_key_and_by_a_click(open_game, context: C
         switch()
         assert context.settings.full_screen is not before
     assert driver.app.window.full_screen is context.settings.full_screen
-
-
-def test_a_button_is_chosen_and_a_switch_is_changed(open_game):
-    driver = open_game(SCREENS["SettingsScene"])
-    driver.frames(2)
-    form = driver.top.form
-    for widget in form.widgets:
-        if isinstance(widget, ButtonRow | ToggleRow):
-            form.focus(widget)
-            assert form.changes.hint == (texts.HINT_CHOOSE if isinstance(widget, ButtonRow) else texts.HINT_CHANGE)
-    assert {ButtonRow, ToggleRow} <= set(map(type, form.widgets))
 
 
 def test_a_press_and_a_click_on_its_hint_sound_the_same_and_once(open_game, context: Context, monkeypatch):
