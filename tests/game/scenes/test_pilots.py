@@ -42,6 +42,7 @@ def scene(driver: Driver) -> WatchScene:
 
 
 def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, context: Context, edited: list[Path]):
+    watching.key(pygame.K_SPACE)
     watching.key(pygame.K_o)
     assert isinstance(watching.top, PilotsScene)
     watching.press_on(texts.PILOTS_WORDS["act"][2])
@@ -50,6 +51,7 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
     path.write_text(GOOD)
     watching.press_on(texts.PILOTS_WORDS["act"][3])
     watch = scene(watching)
+    assert not watch.playback.stopped, "what was stopped goes on"
     watching.wait(lambda: watch.network.name == "pilot.py")
     pilot = watch.network.policy
     assert isinstance(pilot, OwnPilot)
