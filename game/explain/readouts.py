@@ -310,9 +310,14 @@ def draw_corner(canvas: Canvas, small: str, large: str) -> None:
     canvas.text(large, (MARGIN, 58), size=TEXT)
 
 
+def yours(human: float) -> int:
+    """Return a player's share of a flight, 0 to 1, in percent: 0 for none at all, and 100 only for all of it."""
+    return round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
+
+
 def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float, who: str) -> None:
-    """Draw the player's share of a flight, and that of `who` else flew it; a share above zero never reads as 0 %."""
-    you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
+    """Draw the player's share of a flight, and that of `who` else flew it."""
+    you = yours(human)
     if you:
         canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN, tabular=True)
     if you < 100:

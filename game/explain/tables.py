@@ -20,7 +20,7 @@ class Line:
     """Line of a table: a name and its figures, and for who asks, what they are and how they come about.
 
     Attributes:
-        bars: for each figure, the length of a bar below it, 0 to 1; empty for none.
+        bars: for each figure, the length of a bar below it, 0 to 1, or where it begins and ends; empty for none.
 
     """
 
@@ -28,7 +28,7 @@ class Line:
     what: str = ""
     now: str = ""
     lit: bool = False
-    bars: Sequence[float] = ()
+    bars: Sequence[float | tuple[float, float]] = ()
 
 
 def table(head: Sequence[str], lines: Callable[[], Sequence[Line]]) -> Callable[[Cursor], None]:
@@ -60,14 +60,28 @@ def _write_line(cursor: Cursor, line: Line, widths: Sequence[float]) -> None:
     right = cursor.right
     for width, share in zip(widths[::-1], line.bars[::-1], strict=False):
         if cursor.canvas:
-            bar = (right - width + _APART, row.y + 1, width - _APART, 2.5)
-            cursor.canvas.bar(bar, max(share, 0.02), NET if line.lit else mix(FAINT, NET, 0.4))
+            left, top_of, wide, high = right - width + _APART, row.y + 1, width - _APART, 2.5
+            colour = NET if line.lit else mix(FAINT, NET, 0.4)
+            if isinstance(share, tuple):
+                cursor.canvas.bar((left, top_of, wide, high), 0.0, colour)
+                if share[1] > share[0]:
+                    length = max((share[1] - share[0]) * wide, high)
+                    cursor.canvas.bar((left + share[0] * wide, top_of, length, high), 1.0, colour)
+            else:
+                cursor.canvas.bar((left, top_of, wide, high), max(share, 0.02), colour)
         right -= width
     cursor.y = row.y + (STEP if line.bars else _PAD)
     if cursor.canvas:
         cursor.canvas.line((cursor.left, cursor.y), (cursor.right, cursor.y), LINE)
         if line.what:
             cursor.canvas.explain((cursor.left, top, cursor.width, cursor.y - top), line.what, partial(str, line.now))
+
+
+def from_zero(value: float, low: float, high: float) -> tuple[float, float]:
+    """Return where the bar of a value begins and ends on a scale with 0 on it; both are the same at 0."""
+    low, high = min(low, 0.0), max(high, 0.0)
+    zero, end = ((min(max(each, low), high) - low) / max(high - low, 1e-9) for each in (0.0, value))
+    return min(zero, end), max(zero, end)
 
 
 def _write_cells(row: Cursor, cells: Sequence[str], widths: Sequence[float]) -> None:

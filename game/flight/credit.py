@@ -16,6 +16,10 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.networks import sentence, who
 
+GUARDIAN: Final = "guardian"  # the mode of help that goes by futures
+# Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
+HELP: Final = {"off": 0.0, "guard": 0.04, "guide": 0.64}
+OTHER: Final = "other"  # any other place of the dial, or another mode
 TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
 _ASSISTS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are named
 # Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
@@ -38,6 +42,14 @@ class Rules(Protocol):
 def eased(settings: Settings) -> Easing:
     """Return the easing that the player has chosen for the next flight."""
     return Easing(settings.wider_pads, settings.untimed)
+
+
+def help_word(assist: float, mode: str) -> str:
+    """Return the word for help of that assist, 0 to 1, and mode: a key of `HELP`, or `OTHER`."""
+    if assist == 0:
+        return "off"
+    here = [word for word, each in HELP.items() if each == assist and mode == GUARDIAN]
+    return here[0] if here else OTHER
 
 
 class Credit:
@@ -86,7 +98,8 @@ class Credit:
         if flight.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
         if flight.shared and flight.copilot:
-            return texts.YOU_SHARE[flight.copilot.mode]
+            word = help_word(flight.copilot.assist, flight.copilot.mode)
+            return texts.YOU_SHARE[flight.copilot.mode if word == OTHER else word]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
 
     # What made it easier, or another flight

@@ -38,10 +38,11 @@ class GameWindow:
     def __init__(self, full_screen: bool) -> None:
         try:
             pygame.display.init()
-            if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_driver() in _INVISIBLE:
+            if "SDL_VIDEODRIVER" not in os.environ and not _is_seen():
                 raise pygame.error(texts.NO_VIDEO_DEVICE)
             pygame.font.init()
-            size = pygame.display.get_desktop_sizes()[0] if full_screen else VIEW_SIZE  # see `_place`
+            windowed = fitting(pygame.display.get_desktop_sizes()[0]) if _is_seen() else VIEW_SIZE
+            size = pygame.display.get_desktop_sizes()[0] if full_screen else windowed  # see `_place`
             self._window = pygame.Window(texts.GAME, size, resizable=True, fullscreen_desktop=full_screen)
             self._window.get_surface()
         except pygame.error as error:
@@ -49,7 +50,7 @@ class GameWindow:
         self._window.minimum_size = MINIMUM_SIZE
         self._window.set_icon(draw_icon())
         self._full_screen = full_screen
-        self._windowed: tuple[tuple[int, int], tuple[int, int] | int] = (VIEW_SIZE, pygame.WINDOWPOS_CENTERED)
+        self._windowed: tuple[tuple[int, int], tuple[int, int] | int] = (windowed, pygame.WINDOWPOS_CENTERED)
         self.minimised = False
 
     @property
@@ -118,6 +119,17 @@ class GameWindow:
         """Close the window and release the display."""
         self._window.destroy()
         pygame.display.quit()
+
+
+def _is_seen() -> bool:
+    return pygame.display.get_driver() not in _INVISIBLE
+
+
+def fitting(desktop: tuple[int, int]) -> tuple[int, int]:
+    """Return the size of the first window: the usual one, or as large as a small desktop can show in that shape."""
+    (width, height), (wide, high) = VIEW_SIZE, desktop
+    share = min(1.0, wide / width, high / height)
+    return max(round(share * width), MINIMUM_SIZE[0]), max(round(share * height), MINIMUM_SIZE[1])
 
 
 def draw_icon(size: int = _ICON_SHOWN) -> pygame.Surface:

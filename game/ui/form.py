@@ -66,7 +66,8 @@ class Form:
         """How the focused widget is changed: by a press, or by the arrows if it cannot be pressed."""
         if self.focused is not None and self.focused.by_arrows:
             return Hint(self.controls.arrows_aside, texts.HINT_CHANGE)
-        return self.confirms(texts.HINT_CHANGE)
+        acts = self.focused is not None and self.focused.acts
+        return self.confirms(texts.HINT_CHOOSE if acts else texts.HINT_CHANGE)
 
     def confirms(self, hint: str) -> Action:
         return Action(Command.CONFIRM, self.confirm, hint)

@@ -42,6 +42,8 @@ def percent(share: float) -> str:
 class ButtonRow(RowWidget):
     """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus."""
 
+    acts = True
+
     def __init__(
         self,
         label: str,

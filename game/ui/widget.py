@@ -68,6 +68,7 @@ class Widget(UIElement):
         focused: whether the form's focus is here.
         typing: whether this widget takes every key and button, so that none gives a command.
         by_arrows: whether only left and right change it, and a press does nothing.
+        acts: whether a press chooses it, as a button, and changes no value of its own.
         spells: whether text is typed into it.
         follows_mouse: whether the focus comes to it with the mouse; not to a picture that only keys need the focus for.
         warmth: 0 to 1, follows `focused` smoothly.
@@ -76,7 +77,7 @@ class Widget(UIElement):
 
     """
 
-    spells = by_arrows = False
+    spells = by_arrows = acts = False
     follows_mouse = True
 
     def __init__(self, box: pygame.typing.RectLike, label: str) -> None:

@@ -42,6 +42,7 @@ class Chapter(ABC):
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
         explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
+        listed: whether its list of steps makes it done, with or without an answer to its question.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         complete: whether all that it asks for was done, beyond a try; then its "see why" makes it done.
         problem: why there is nothing to show or to try; empty if there is.
@@ -54,6 +55,7 @@ class Chapter(ABC):
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
     explains: ClassVar[bool] = False
+    listed: ClassVar[bool] = False
     problem = ""
     complete = True
 

@@ -170,8 +170,10 @@ class DownhillChapter(Chapter):
         self.begin()
 
     def choose(self, index: int) -> None:
-        """Show the line, 0, or the valley, 1."""
+        """Show the line, 0, or the valley, 1, which begins with short steps."""
         self.valley = bool(index)
+        if self.valley:  # the longest steps on the line leave the valley at once
+            self.rate, self.changed = _FIRST_RATE, True
         self.begin()
 
     def update(self) -> None:

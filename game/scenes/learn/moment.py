@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -24,7 +25,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL
 from game.explain.figures import decimal, points
-from game.explain.tables import Line, Part, formula, table
+from game.explain.tables import Line, Part, formula, from_zero, table
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
 from game.scenes.learn.chapter import Chapter, Code
@@ -43,8 +44,9 @@ MOMENTS: Final = (
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
 _METRES, _BELOW, _ABOVE = 52.0, 1.2, 2.0  # metres: across the picture at least, below the ground, above the lander
-_ANSWERS: Final = (140.0, 80.0, 20.0)  # points of the answers, before that of less than 0
+_ANSWERS: Final = (140.0, 80.0, 30.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
+_BAR, _ROOM = 50.0, 1.5  # the scale of the six values: in steps of so many points, so many times the largest
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
 
 
@@ -316,13 +318,14 @@ class ChoiceChapter(MomentChapter):
         column.add(table(("", *texts.LEARN_CHOICE_HEAD), self._lines))
 
     def _lines(self) -> list[Line]:
-        """Return each action with its value, and what came of it; bars are on one scale."""
+        """Return each action with its value, and what came of it; bars begin at 0, on one scale for the moment."""
         came = {action: each.came for action, each in self.results.items()}
         shown = [*self.values.tolist(), *came.values()]
-        low, span, lines = min(shown), max(max(shown) - min(shown), 1e-9), list[Line]()
+        high, lines = _BAR * math.ceil(_ROOM * max(float(np.abs(self.values).max()), 1.0) / _BAR), list[Line]()
+        low = -high if min(shown) < 0 else 0.0
         for action, value in enumerate(self.values.tolist()):
             brought = points(came[action], 1) if action in came else ""
-            bars = [(each - low) / span for each in (value, came.get(action, low))]
+            bars = [from_zero(each, low, high) for each in (value, came.get(action, 0.0))]
             cells = (texts.said(ACTION_NAMES[action]), points(value, 1), brought)
             lines.append(Line(cells, lit=action == self.best, bars=bars))
         return lines

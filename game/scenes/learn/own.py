@@ -8,10 +8,13 @@ from contextlib import suppress
 from functools import partial
 from typing import Final, NamedTuple
 
+import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
+from ai.nn import ModelFormatError
 from ai.pilots.shelf import Shelf
+from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
 from game.core.scene import Route, Transition, push
@@ -31,6 +34,9 @@ from game.ui.panel import Column
 # Where each step is done; a race is begun here.
 STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": "", "file": ""}
 _INDENT: Final = 32.0
+_HALF: Final = 0.5  # share of flights that the question asks for
+_FLIGHTS: Final = 100  # flights that a share is taken of, once there are so many
+_ANSWERS: Final = (5.0, 60.0, 600.0, 3600.0)  # seconds of the answers
 
 
 class Step(NamedTuple):
@@ -48,7 +54,7 @@ class OwnChapter(Chapter):
 
     """
 
-    key, answer, door, shape = "own", 0, Route("watch"), 0.0
+    key, door, shape, listed = "own", Route("watch"), 0.0, True
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -59,7 +65,7 @@ class OwnChapter(Chapter):
     def restart(self) -> None:
         self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
         self.steps = self._found()
-        self.tried = self.steps["train"].done
+        self.tried = bool(self._runs or self._library.rescued())
         self.complete = all(step.done for step in self.steps.values())
 
     def enter(self) -> None:
@@ -108,7 +114,7 @@ class OwnChapter(Chapter):
         good = pilot is not None and pilot.landed >= own_pilots.GOOD
         return {
             "train": _step(
-                first is not None, "trained" if runs else "unnamed" if rescued else "untrained",
+                bool(runs), "trained" if runs else "unnamed" if rescued else "untrained",
                 name=first.name if first else "", decisions=f"{first.decisions if first else 0:,}",
             ),
             "land": _step(
@@ -127,12 +133,32 @@ class OwnChapter(Chapter):
             ),
         }  # fmt: skip
 
+    @property
+    def half(self) -> float | None:
+        """Seconds of training after which half of the latest run's flights landed; None if that is not known."""
+        if not self._runs:
+            return None
+        try:
+            history = History.read(self._runs[0].folder)
+        except ModelFormatError:
+            return None
+        reached = np.flatnonzero((history["success"] >= _HALF) & (history["episodes"] >= _FLIGHTS))
+        return float(history["seconds"][reached[0]]) if len(reached) else None
+
+    def verdict(self) -> int | None:
+        """Return the answer next to the time that half of the flights took, by their ratio; None before they landed."""
+        half = self.half
+        if half is None:
+            return None
+        return int(np.argmin(np.abs(np.log(np.array(_ANSWERS) / max(half, 1.0)))))
+
     def why(self) -> str:
         if not self._runs:
             return self.steps["train"].sentence
-        run = self._runs[0]
+        run, half = self._runs[0], self.half
         sentence = texts.LEARN_OWN_WHY.format(name=run.name, seconds=run.seconds, decisions=f"{run.decisions:,}")
-        return f"{sentence} {self.steps['land'].sentence}"
+        came = "" if half is None else texts.LEARN_OWN_HALF.format(seconds=max(round(half), 1))
+        return " ".join(filter(None, (sentence, came, self.steps["land"].sentence)))
 
     def code(self) -> Sequence[Code]:
         return [Code(Training.advance, DeepQAgent.train_step), Code(DeepQAgent.train_step), Code(DeepQAgent.learn)]

@@ -57,16 +57,6 @@ class RunsChapter(Chapter):
         """Return the configurations of the runs."""
 
     @property
-    def words(self) -> dict[str, str]:
-        """The chapter's texts, and how these runs differ from those of Train."""
-        words, modern, ours = super().words, PRESETS["modern"], self.configs()[0]
-        steps, further = (texts.LEARN_SMALL_STEPS.format(count=each.n_step) for each in (ours, modern))
-        differs = texts.LEARN_SMALL.format(
-            steps=steps, modern_steps=further, batch=ours.batch_size, modern_batch=modern.batch_size
-        )
-        return {**words, "differs": differs}
-
-    @property
     def plan(self) -> Plan:
         return self.PLAN
 
@@ -247,6 +237,16 @@ class TargetChapter(DuelChapter):
     """A guess from a guess: the left agent's target network is a copy made every 100 gradient steps."""
 
     key, quantity = "target", "value"
+
+    @property
+    def words(self) -> dict[str, str]:
+        """The chapter's texts, and how these runs differ from those of Train."""
+        words, modern, ours = super().words, PRESETS["modern"], self.configs()[0]
+        steps, further = (texts.LEARN_SMALL_STEPS.format(count=each.n_step) for each in (ours, modern))
+        differs = texts.LEARN_SMALL.format(
+            steps=steps, modern_steps=further, batch=ours.batch_size, modern_batch=modern.batch_size
+        )
+        return {**words, "differs": differs}
 
     def configs(self) -> Sequence[Config]:
         return SMALL_RUN, config_of(self.choice)

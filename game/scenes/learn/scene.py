@@ -74,9 +74,9 @@ class ChapterScene(PanelScene):
         self.page = page
         self.panel.scrolled = 0.0
         self.reword()
-        if page == WHY and self.chapter.tried:
+        if page == WHY and self._why:
             self._progress.show(self.key, self._why, self._came)
-            answered = self._came is not None or self._progress.done(self.key)
+            answered = self._came is not None or self._progress.done(self.key) or self.chapter.listed
             self._progress.note(self.key, done=self.chapter.complete and answered)
         self.context.apply_settings()
         if not on_tabs:
@@ -95,6 +95,9 @@ class ChapterScene(PanelScene):
     def _restart(self) -> None:
         """Begin the chapter's picture anew."""
         if not self.chapter.problem:
+            if self.chapter.tried:  # what was shown stays
+                self.reword()
+                self._progress.show(self.key, self._why, self._came)
             self.chapter.restart()
             self.build()
 

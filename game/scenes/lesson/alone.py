@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Final
 
-import numpy as np
 import pygame
 
 from ai.explain.agent_lesson import LearnedAlone, Lesson
@@ -15,7 +14,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, MUTE, NET, NIGHT0, SMALL
 from game.explain.figures import points
-from game.explain.tables import Line, Part, formula, table
+from game.explain.tables import Line, Part, formula, from_zero, table
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame, pulled
 from game.scenes.lesson.step import LearningStep, Pulls
@@ -122,14 +121,15 @@ class AloneFrame(Frame):
             canvas.marker("ring", way[-1], 20, HUMAN)
 
     def _values(self) -> list[Line]:
-        """Return each action's value now, its change, and the bar of it on one scale."""
+        """Return each action's value now, its change, and the bar of the change, from 0; the target is on the scale."""
         before, now = (each / self._scale for each in (self._first, self.alone.outputs))
-        low, span = float(min(*before, *now)), max(float(np.ptp([*before, *now])), 1e-9)
+        goal = self.alone.target / self._scale - float(before[self._action])
+        changes = [goal, *(now - before).tolist()]
         return [
             Line(
                 (said_action(action), points(end), points(end - start)),
                 lit=action == self._action,
-                bars=[(end - low) / span],
+                bars=[from_zero(end - start, min(changes), max(changes))],
             )
             for action, (start, end) in enumerate(zip(before.tolist(), now.tolist(), strict=True))
         ]

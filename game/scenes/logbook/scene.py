@@ -97,7 +97,7 @@ class LogbookScene(PanelScene):
         elif entry and entry.file in self._thrown:
             column.button(texts.LOGBOOK_BRING_BACK, self._bring_back, size=TITLE, colour=INK)
         if entry:
-            for words in filter(None, (who_and_when(entry), why_in_brackets(entry), self._records.why_gone(entry))):
+            for words in filter(None, (who_and_when(entry), why_not(entry), self._records.why_gone(entry))):
                 column.aside(words)
         column.gap(14)
         column.button(texts.CHOICES_LESS if self._more else texts.CHOICES_MORE, self._switch_more)
@@ -204,14 +204,14 @@ class LogbookScene(PanelScene):
 
 def who_and_when(entry: Entry) -> str:
     """Return when a flight ended, and who flew it."""
-    by = {1.0: texts.LOGBOOK_YOU, 0.0: flew(entry.network)}.get(entry.human, texts.LOGBOOK_SHARED)
-    return f"{time.strftime('%H:%M', time.localtime(entry.when))}, {by}"
+    who = flew(entry.network)
+    by = {1.0: texts.LOGBOOK_YOU, 0.0: who}.get(entry.human, texts.LOGBOOK_SHARED.format(who=who))
+    return texts.LOGBOOK_WHO.format(time=time.strftime("%H:%M", time.localtime(entry.when)), who=by)
 
 
-def why_in_brackets(entry: Entry) -> str:
-    """Return the points of a flight that does not count, as its row has them, and why; empty if it counts."""
-    points = texts.LOGBOOK_UNCOUNTED.format(points=entry.score)
-    return f"{points}: {texts.NOT_COUNTED[entry.bar].format(who=flew(entry.network))}" if entry.bar else ""
+def why_not(entry: Entry) -> str:
+    """Return why a flight does not count; empty if it counts."""
+    return texts.NOT_COUNTED[entry.bar].format(who=flew(entry.network)) if entry.bar else ""
 
 
 def entry_row(entry: Entry) -> Row:

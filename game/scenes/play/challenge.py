@@ -60,13 +60,14 @@ class Challenge:
         total: points of the chain of flights that it is, for the logbook.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
         stake: question before another start, and what would be lost, while that is more than the present flight.
+        eased_line: what is said before a flight that assists will set apart; empty for no more than their names.
         copy_hint: hint of the key that copies the text for a friend; empty for the usual words.
         next_hint: hint of the key for what comes next; empty where it does nothing.
         again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
 
-    name = title = line = goal = opening = bar = copy_hint = next_hint = again_hint = new_hint = ""
+    name = title = line = goal = opening = eased_line = bar = copy_hint = next_hint = again_hint = new_hint = ""
     free = alone = eases = guides = elsewhere = shadows = through = False
     fixed = kept = compares = True
     hands = "own"
@@ -111,6 +112,10 @@ class Challenge:
     @property
     def holds(self) -> bool:
         """Whether the craft goes on to hang, although it is touched."""
+        return False
+
+    def keeps_stick(self, flight: Flight) -> bool:
+        """Whether the player cannot hand over the stick now."""
         return False
 
     def follow(self, flight: Flight) -> str:

@@ -9,9 +9,10 @@ from game.core import texts
 from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG, Settings
 from game.drawing.tokens import INK
+from game.flight.credit import GUARDIAN, HELP, OTHER
 from game.flight.handicap import HANDS
 from game.input.controls import Command
-from game.scenes.play.help import GUARDIAN, HELP, MODES, OTHER, choose, means, word_of
+from game.scenes.play.help import MODES, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene, StillPicture
 from game.ui.rows import percent

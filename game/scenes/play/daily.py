@@ -59,7 +59,7 @@ class DailyStart(Challenge):
         self._look()
 
     def word(self) -> None:
-        self.title, self.copy_hint = texts.DAILY, texts.DAILY_HINT_COPY
+        self.title, self.copy_hint, self.eased_line = texts.DAILY, texts.DAILY_HINT_COPY, texts.DAILY_EASED
         openings = {"day_past": texts.DAILY_PAST_BEGIN, "day_again": texts.DAILY_AGAIN_BEGIN}
         self.opening = openings.get(self.bar, texts.DAILY_FIRST_BEGIN)
 

@@ -40,7 +40,7 @@ class FreeFlight(Challenge):
         self._ladder = True  # whether the present flight began on it
 
     def word(self) -> None:
-        self.opening = texts.LADDER_BEGIN if self._ladder else texts.BEGIN
+        self.opening = "" if self._ladder else texts.BEGIN
 
     def recall(self, entries: Iterable[Entry]) -> None:
         """Give players of before a place on the ladder, by their landings."""

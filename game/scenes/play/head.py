@@ -52,6 +52,7 @@ class Head:
         controls: the keys of the craft, below the sentence.
         paths: legend of the dotted paths, their words and colours.
         help: the three words of help, and what they mean now; None where nobody can help.
+        panel: a panel at the right, which the sentence keeps clear of; None for none.
 
     """
 
@@ -67,6 +68,7 @@ class Head:
     paths: Sequence[tuple[str, Colour]] = ()
     help: HelpWords | None = None
     means: Now = field(default=str)
+    panel: pygame.FRect | None = None
 
     def write(self, canvas: Canvas, *, drawn: bool = True) -> float:
         """Write it, or only measure; return the y of its lower end, in points of `canvas.reading`."""
@@ -131,7 +133,9 @@ class _Layout:
         room = min(_WIDEST, view.width - 2 * max(self.side + 24, beside + 24))
         cursor = self.cursor(view.centerx - room / 2, top, room, _SENTENCE)
         if head.sentence:
-            self._write_sentence(cursor)
+            beside_panel = self._beside_panel(cursor)
+            self._write_sentence(beside_panel)
+            cursor.gap(beside_panel.y - cursor.y)
         if head.controls:
             row = HintRow(head.controls, (0, 0), size=TEXT)
             left = view.centerx - row.width(canvas) / 2
@@ -149,6 +153,17 @@ class _Layout:
                 head.help.draw(canvas, view.centerx, self.help_line, head.means)
             cursor.gap(LEADING * SMALL + 6)
         return cursor.y
+
+    def _beside_panel(self, cursor: Cursor) -> Cursor:
+        """Return a place for the sentence at the left of the panel, where it would reach into that."""
+        panel, top = self.head.panel, cursor.y
+        lines = Cursor(cursor.left, top, cursor.width, self.canvas.scale, None, size=_SENTENCE)
+        lines.text(self.head.sentence)
+        half = min(lines.measured(self.head.sentence), cursor.width) / 2
+        if panel is None or lines.y <= panel.top or cursor.left + cursor.width / 2 + half + 8 <= panel.left:
+            return cursor
+        left, right = self.canvas.view.left + self.side + 24, panel.left - 16
+        return self.cursor(left, top, right - left, _SENTENCE)
 
     def _write_sentence(self, cursor: Cursor) -> None:
         head, canvas = self.head, self.canvas
@@ -195,7 +210,9 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     if not (waits or whole or flight.over):
         usual = sentence(flight, flown.credit, flown.interventions.word, controls)
         words, warns = (said, False) if said else usual
-        return Head(words, warns, lamp, hints=hints, help=helps if flown.help_words.shown else None, means=means)
+        shown = helps if flown.help_words.shown else None
+        panel = flown.copilot_panel.box(flown.context.reading()) if flown.thinks else None
+        return Head(words, warns, lamp, hints=hints, help=shown, means=means, panel=panel)
     if flown.ending.shown:
         return Head(hints=hints)
     caption, name = challenge.titles(flight, flown.network, whole=whole)
@@ -207,7 +224,7 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     opening = challenge.opening
     if flown.begun:
         opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
-    keys = flight_hints(controls) if opening and said is None else []
+    keys = flight_hints(controls) if (opening or challenge.free) and said is None else []
     guided = [(texts.PATH_NETWORK.format(who=flown.credit.who), NET)] if flown.path_preview.asks else []
     paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
     return replace(head, sentence=said or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
@@ -220,6 +237,7 @@ def _asides(flown: FlownFlight) -> list[str]:
         texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
         credit.header if credit.alone and not flight.over else "",
         credit.notice or challenge.goal,
+        challenge.eased_line if credit.bar == "assists" and not (flown.begun or flight.over) else "",
         texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and challenge.goal and not flight.over else "",
         *surroundings(flight.env),
         *challenge.asides(flight),

@@ -9,17 +9,14 @@ import pygame
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.tokens import INK, MUTE, NET, SMALL
+from game.flight.credit import GUARDIAN, HELP, OTHER, help_word
 from game.input.controls import Command, translate
 from game.ui.rows import percent
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
 
-MODES: Final = ("tolerance", "guardian")
-GUARDIAN: Final = MODES[1]  # in which help goes by futures
-# Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
-HELP: Final = {"off": 0.0, "guard": 0.04, "guide": 0.64}
-OTHER: Final = "other"  # any other place of the dial, or another mode
+MODES: Final = ("tolerance", GUARDIAN)
 _APART: Final = 20.0
 _SHOWN: Final = 120  # steps that the words are seen after a change
 _STEPS: Final = {Command.SLOWER: -1, Command.FASTER: 1}
@@ -27,10 +24,7 @@ _STEPS: Final = {Command.SLOWER: -1, Command.FASTER: 1}
 
 def word_of(settings: Settings) -> str:
     """Return the word for the help that is set, a key of `HELP`, or `OTHER`."""
-    if settings.assist == 0:
-        return "off"
-    here = [word for word, assist in HELP.items() if assist == settings.assist and settings.copilot == GUARDIAN]
-    return here[0] if here else OTHER
+    return help_word(settings.assist, settings.copilot)
 
 
 def means(settings: Settings) -> str:

@@ -27,7 +27,7 @@ def flight_actions(scene: PlayScene) -> list[Action]:
         Command.RETRY: texts.HINT_RETRY,
         Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
     }
-    if flight.over or not flight.network:
+    if flight.over or not flight.network or challenge.keeps_stick(flight):
         hints[Command.HANDOVER] = ""
     calm, mouse = scene.waiting or flight.over, scene.context.controls.mouse_in_use
     named = hints if calm else _IN_FLIGHT if mouse else ()

@@ -37,7 +37,7 @@ class PauseScene(PanelScene):
     Args:
         below: the paused scene.
         retry: function that restarts the scene below; None for no such entry.
-        retry_word: label of that entry; empty for the usual one.
+        retry_word: what that entry says; called each time the column is built.
         more: function that returns further entries and their actions; called each time the column is built.
 
     """
@@ -49,7 +49,7 @@ class PauseScene(PanelScene):
         context: Context,
         below: Scene,
         retry: Callable[[], None] | None = None,
-        retry_word: str = "",
+        retry_word: Callable[[], str] = lambda: texts.PAUSE_RETRY,
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
         super().__init__(context)
@@ -65,7 +65,7 @@ class PauseScene(PanelScene):
         panel.title(texts.PAUSE_TITLE, 44.0, "extralight")
         self.describe_below(panel)
         panel.gap(8)
-        retry = [(self._retry_word or texts.PAUSE_RETRY, self._begin_anew)] if self._retry else []
+        retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
         rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
         for label, press in rows:

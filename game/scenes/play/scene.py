@@ -202,6 +202,8 @@ class PlayScene(Scene):
         self.context.apply_settings()
 
     def _hand_over(self) -> None:
+        if self.challenge.keeps_stick(self.flight):
+            return
         if self.flight.hand_over():
             self._sound.play("to_network" if self.flight.hand is StickHolder.NETWORK else "to_human")
         elif self.flight.network is None and not self.flight.over:

@@ -17,14 +17,15 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import FIRST
 from game.core import texts
 from game.core.settings import Settings
-from game.flight.credit import Credit
+from game.explain.readouts import yours
+from game.flight.credit import GUARDIAN, Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import Policy, QPolicy, sentence, who
 from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
 from game.scenes.play.challenge import Challenge
-from game.scenes.play.help import GUARDIAN, choose
+from game.scenes.play.help import choose
 from game.scenes.play.words import falls_too_fast, leaves_at_the_top, turned
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
@@ -110,7 +111,7 @@ class Tutorial(Challenge):
 
     def __init__(self) -> None:
         self._lessons = list(LESSONS)
-        self.flown = False
+        self.flown = self._saved = False  # saved: whether a guard has kept the present flight from a crash
         self._begin_lesson(0)
 
     @property
@@ -142,7 +143,7 @@ class Tutorial(Challenge):
         self._count()
         self._begun += 1
         self._done_for = self.praise = self._flown_for = 0
-        self._over = False
+        self._over = self._saved = False
         flight = Flight(seed, network, mission=FIRST.name, shares=self.lesson.guarded)
         height, sinks, angle, aside = self.lesson.start
         flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, angle, 0.0]]))
@@ -169,6 +170,10 @@ class Tutorial(Challenge):
         """The craft goes on to hang until help is turned on, where a lesson asks for that."""
         return self.lesson.guarded and self._help is not None and self._help.assist == 0
 
+    def keeps_stick(self, flight: Flight) -> bool:
+        """A guard is shown only to who keeps the stick; what the network has taken over may be taken back."""
+        return self.lesson.guarded and not self.through and flight.hand is StickHolder.HUMAN
+
     def dial(self, settings: Settings) -> Settings:
         """Return the help of the lessons, on guard and at nothing: the player's own stays where it is."""
         self._help = self._help or replace(settings, assist=0.0, copilot=GUARDIAN)
@@ -185,6 +190,7 @@ class Tutorial(Challenge):
             self._why = self._reason(flight)
         self._over = flight.over
         self._flown_for += 1
+        self._saved |= flight.overridden and (flight.guard is None or flight.guard.saves)
         if self.praise:
             self.praise -= 1
             if not self.praise:
@@ -245,9 +251,14 @@ class Tutorial(Challenge):
         if not card.good:
             return replace(card, score="")
         title, reason = texts.TUTORIAL_DONE, texts.TUTORIAL_DONE_REASON
-        if self.lesson.guarded:
-            title = texts.TUTORIAL_SAVED_TITLE if card.stepped_in else title
-            reason = texts.TUTORIAL_SAVED if card.stepped_in else texts.TUTORIAL_NOT_NEEDED
+        if card.stepped_in:
+            title, reason = texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED
+        elif self.lesson.guarded and flight.share < 1:
+            title = texts.TUTORIAL_GOOD["land"]
+            reason = texts.TUTORIAL_HELPED.format(who=who(flight.network), percent=100 - yours(flight.share))
+            card = replace(card, quality="")
+        elif self.lesson.guarded:
+            reason = texts.TUTORIAL_NOT_NEEDED
         return replace(card, title=title, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
 
     # In words
@@ -291,7 +302,8 @@ class Tutorial(Challenge):
         if self.praise:
             return texts.TUTORIAL_GOOD[lesson.name]
         if network:
-            return texts.TUTORIAL_BROUGHT if lesson.guarded else texts.TUTORIAL["take_back"][0]
+            brought = texts.TUTORIAL_BROUGHT if self._saved else texts.TUTORIAL_LONG
+            return brought if lesson.guarded else texts.TUTORIAL["take_back"][0]
         if lesson.guarded:
             return other if self._begun > _MANY or self._flown_for > _LONG else usual
         if lesson.name not in ("lean", "fall") and abs(float(env.position[0, 0])) > _SIDEWAYS:

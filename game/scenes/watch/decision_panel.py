@@ -28,7 +28,8 @@ _INPUTS: Final = _WORDS + 72  # first baseline of the inputs
 _PITCH: Final = 18
 _NAME, _FIGURE = 96, 52  # room for an input's name, and for its figure
 _SWATCH: Final = (5.0, 12.0)  # of an action's colour on the map
-_LEGEND: Final = pygame.Rect(PANEL.left, PANEL.bottom + 4, PANEL.width, 46)  # of the map of scores
+_LEGEND: Final = pygame.Rect(PANEL.left, PANEL.bottom + 4, PANEL.width, 28)  # of the map
+_SCALE: Final = 24  # points more for the scale of scores
 _BARS: Final = PaintCache(1)
 
 
@@ -59,6 +60,7 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
 
 def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
     """Draw the colour of each action on the map before its name."""
+    _draw_meaning(canvas, ACTION, _LEGEND)
     for action, colour in enumerate(COLOURS):
         middle = top + ROW * action + (-4 if by_rules else FIRST)
         canvas.rounded((PANEL.left + _LEFT - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
@@ -66,17 +68,25 @@ def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
     canvas.explain((PANEL.left, top - 10, PANEL.width, HEIGHT - 20), texts.EXPLAIN_MAP[ACTION - 1])
 
 
+def _draw_meaning(canvas: Canvas, kind: int, box: pygame.Rect) -> None:
+    """Say below the panel what the colours of the sky are."""
+    canvas.panel(box, _COVER)
+    place = (box.left + _LEFT, box.top + 18)
+    canvas.text(texts.MAP_COLOURS[kind - 1], place, size=SMALL, colour=MUTE, room=box.width - 2 * _LEFT)
+
+
 def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
     """Draw the scale of the map of scores below the panel."""
-    left, top, width = _LEGEND.left + _LEFT, _LEGEND.top, _LEGEND.width - 2 * _LEFT
-    canvas.panel(_LEGEND, _COVER)
+    box = pygame.Rect(_LEGEND.topleft, (_LEGEND.width, _LEGEND.height + _SCALE))
+    left, top, width = box.left + _LEFT, box.top + 13, box.width - 2 * _LEFT
+    _draw_meaning(canvas, SCORE, box)
     _BARS.draw(canvas, (left, top + 12, width, 6), "scores", _paint_scale)
     for share, align in ((0.0, "left"), (0.5, "centre"), (1.0, "right")):
         if scale is not None:
             value = points(scale[0] + share * (scale[1] - scale[0]), 1).removesuffix(".0")
-            place = (left + share * width, top + 34)
+            place = (left + share * width, top + 32)
             canvas.text(value, place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
-    canvas.explain(_LEGEND, texts.EXPLAIN_MAP[SCORE - 1])
+    canvas.explain(box, texts.EXPLAIN_MAP[SCORE - 1])
 
 
 def _paint_scale(sheet: Canvas) -> None:

@@ -45,7 +45,7 @@ class PilotsScene(PanelScene):
         self._shelf = Shelf(context.user_dir, kind)
         self._name, self._said = now.stem if now else "", ""
         self._worker: Worker | None = None
-        self._share = 0.0
+        self._share, self._flown = 0.0, False  # how much is measured, and whether the file itself is
         self.enter()
 
     def enter(self) -> None:
@@ -103,7 +103,7 @@ class PilotsScene(PanelScene):
         column.words([*verbs, (texts.PILOTS_RACE, self._race), measure])
         if self._worker:
             words = texts.PILOTS_MEASURING
-            column.aside(lambda: words[self._share > 0].format(count=own.STARTS, seconds=LOADING))
+            column.aside(lambda: words[2 if self._flown else self._share > 0].format(count=own.STARTS, seconds=LOADING))
             column.bar(lambda: self._share)
         if mine := next((each for each in self._own if each.name == self._name), None):
             self._describe_card(column, mine)
@@ -173,7 +173,7 @@ class PilotsScene(PanelScene):
         return push("play", rival=self.context.pilot, rival_name=self._name)
 
     def _measure(self) -> None:
-        context, self._share, self._said = self.context, 0.0, ""
+        context, self._share, self._flown, self._said = self.context, 0.0, False, ""
         self._worker = Worker(own.measure, context.user_dir, context.models_dir, self._files[self._name])
         self.build()
 
@@ -183,6 +183,7 @@ class PilotsScene(PanelScene):
         if worker:
             for news in worker.poll():
                 if isinstance(news, Measured):
+                    self._flown = True  # it is the first
                     self.enter()
                 else:
                     self._share = news

@@ -69,6 +69,7 @@ class WatchScene(FormScene):
         self.explained = Explained()
         self.problem = self._wanted = self._message = ""
         self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
+        self._stood = False  # whether all stood still in the last update
         self._valued = True  # whether who flies gives values
         self._version = 0  # of the player's own file that flies
         self._settings = context.settings
@@ -107,7 +108,7 @@ class WatchScene(FormScene):
             self.world.set_up_camera()
 
     def reword(self) -> None:
-        self._message = ""
+        self._message, self.hand.label = "", texts.TOUCH_LANDER
         self._describe(self._model_choice.index)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -177,6 +178,9 @@ class WatchScene(FormScene):
             if self._awaited and pilot.ready:
                 self._fly(self._awaited)
         self.world.update()
+        if self.form.focused is self.hand and not self.playback.stopped and self._stood:
+            self.form.focus(self._model_choice)  # or its frame would follow the flight
+        self._stood = self.playback.stopped
         self.explained.update()
         outcome = self.form.update()
         self._lay_out()
@@ -285,7 +289,7 @@ class WatchScene(FormScene):
         self._panel.lay_out(pygame.FRect(MARGIN, end - height, width, height), scale)
 
     def _pause(self) -> Transition:
-        return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
+        return push("pause", self, self._begin_anew, lambda: texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
@@ -295,15 +299,19 @@ class WatchScene(FormScene):
         ]
 
     def _open_networks(self) -> Transition:
-        return push("runs", choose=partial(setattr, self, "_wanted"))
+        return push("runs", choose=self._take)
 
     def _open_pilots(self) -> Transition:
         def choose(path: Path | None) -> None:
             if path:
                 own.take(self.context, path)
-                self._wanted = path.name
+                self._take(path.name)
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
+
+    def _take(self, name: str) -> None:
+        """Let a pilot fly that was chosen in a list."""
+        self._wanted, self.playback.stopped = name, False
 
     def _look_again(self) -> None:
         """Apply the choice made in a list, and reload networks added, removed or renamed meanwhile."""

@@ -7,12 +7,14 @@ import pytest
 from ai.copilot.copilot import Mode
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
-from game.core.settings import SettingsFile
+from game.core.settings import Settings, SettingsFile
 from game.flight import networks
+from game.flight.credit import HELP, Credit
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.handicap import HANDS, OWN, Handicap
 from game.flight.logbook import Records
-from game.scenes.play.help import HELP, word_of
+from game.scenes.play.challenge import Challenge
+from game.scenes.play.help import word_of
 from game.scenes.play.interventions import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
@@ -57,6 +59,19 @@ def shared(network: Wants | None = None, assist: float = 0.5, **kinds: object) -
 def keys(seed: int, steps: int) -> list[int]:
     rng = np.random.default_rng(seed)
     return np.repeat(rng.integers(6, size=steps), rng.integers(1, 9, size=steps))[:steps].tolist()
+
+
+def test_who_flies_is_said_by_the_word_of_the_help():
+    flight = Flight(1, Wants())
+    credit = Credit(flight, Settings(), Challenge())
+    for word, assist, mode in (
+        ("guard", HELP["guard"], Mode.GUARDIAN),
+        ("guide", HELP["guide"], Mode.GUARDIAN),
+        ("guardian", 0.3, Mode.GUARDIAN),
+        ("tolerance", HELP["guide"], Mode.TOLERANCE),
+    ):
+        flight.help(assist, mode)
+        assert credit.header == texts.YOU_SHARE[word]
 
 
 def test_without_assist_every_action_is_the_persons_and_with_it_bad_ones_are_changed():

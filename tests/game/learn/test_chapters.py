@@ -13,6 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LanderEnv, Outcome
 from ai.nn import SGD, Adam
 from ai.training.config import Config
+from ai.training.history import History, Point
 from ai.training.loop import Training
 from ai.training.run import save
 from ai.training.small_run import Flown as Flight
@@ -22,6 +23,7 @@ from game.core.scene import Push
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.explain.figures import decimal, percent, points
+from game.explain.tables import from_zero
 from game.flight.logbook import Records
 from game.scenes.learn import downhill, moment, pictures, plane
 from game.scenes.learn import runs as runs_module
@@ -184,7 +186,9 @@ def test_in_the_valley_adam_gets_further_than_plain_steps_of_any_length(made: Ma
     for rate in (0.01, 0.1, 0.25, 0.5):
         with subtests.test(rate=rate):
             chapter = made(DownhillChapter)
+            chapter.set_rate(0.5)
             chapter.choose(1)
+            assert chapter.rate == 0.01, "steps that were too long on the line are short again"
             chapter.set_rate(rate)
             for _ in range(6 * (downhill.VALLEY_STEPS + 2)):
                 chapter.update()
@@ -356,13 +360,28 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
             assert judged.came == pytest.approx(came, abs=0.05)
             assert judged.decisions == len(pays)
             assert chapter.tried
-            assert chapter.verdict() == 2, "about 20 points, by the first; the others are shorter"
+            assert chapter.verdict() == 2, "about 30 points, by the first; the others are shorter"
         chapter.turn()
         assert points(judged.value, 1) in str([code.notes for code in chapter.code()]), "the moment that was judged"
     assert f"{len(MOMENTS)} moments" in chapter.why()
     assert np.mean([abs(each.value - each.came) for each in chapter.judged]) < 12
     assert np.mean([abs(each.plain - each.came) for each in chapter.judged]) > 40, "than a guess of the whole score"
     assert 10 < chapter.judged[0].came < 45, "the answer to the question"
+
+
+def test_bars_begin_at_0_and_keep_their_scale_when_a_result_arrives(made: Made):
+    chapter = made(ChoiceChapter)
+    before = [line.bars[0] for line in chapter._lines()]
+    assert [start for start, _ in before] == [0.0] * 6
+    for (_, end), value in zip(before, chapter.values.tolist(), strict=True):
+        assert end == pytest.approx(before[0][1] * value / chapter.values[0], rel=1e-5)
+    chapter.begin_with(chapter.worst)
+    fly(chapter)
+    lines = chapter._lines()
+    assert [line.bars[0] for line in lines] == before
+    assert [line.bars[1][1] > 0 for line in lines] == [action == chapter.worst for action in range(6)]
+    assert from_zero(-10.0, -50.0, 50.0) == (0.4, 0.5)
+    assert from_zero(0.0, -50.0, 50.0) == (0.5, 0.5)
 
 
 def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
@@ -465,6 +484,14 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     save(training, context.user_dir / "models" / "mine", state=False)
     assert done() == {"train"}
     assert "mine" in chapter.why()
+    assert chapter.verdict() is None, "no flight has landed yet"
+    for seconds, answer in ((3.0, 0), (70.0, 1), (500.0, 2), (9000.0, 3)):
+        history = History()
+        for late, flights, share in ((0.1, 1, 1.0), (0.5, 100, 0.4), (1.0, 200, 0.5), (2.0, 300, 0.9)):
+            history.append(Point(late * seconds, 1e3, flights, share, 0.0, 0.0, 0.0, 0.0, 0.0))
+        history.write(context.user_dir / "models" / "mine")
+        assert chapter.verdict() == answer
+        assert texts.LEARN_OWN_HALF.format(seconds=round(seconds)) in chapter.why()
     assert (chapter.tried, chapter.complete) == (True, False)
     context.settings.model = "mine"
     assert done() == {"train", "choose"}

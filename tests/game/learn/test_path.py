@@ -13,6 +13,7 @@ from game.scenes.learn.list import LearnScene
 from game.scenes.learn.path import PATH, Progress, following
 from game.scenes.learn.scene import CODE, PREDICT, TRY, WHY, ChapterScene
 from game.ui.context import Context
+from game.ui.rows import ButtonRow, ChoiceRow
 from tests.support.driver import Driver
 from tests.support.screens import save_settings
 from tests.support.written import words_written
@@ -110,6 +111,11 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     scene.turn_to(WHY)
     assert texts.LEARN_CAME[True] in written(driver, monkeypatch)
     shown = scene.chapter.why()
+    scene.turn_to(TRY)
+    driver.key(pygame.K_r)
+    assert not scene.chapter.tried
+    scene.turn_to(WHY)
+    assert shown in written(driver, monkeypatch), "begun anew, it says what the try before has shown"
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
     driver = open_game(ChapterScene, "neuron")
@@ -124,6 +130,15 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     assert shown not in written(driver, monkeypatch), "but not in another language"
 
 
+def test_a_button_is_chosen_and_what_has_a_value_is_changed(open_game: Open, context: Context):
+    save_settings(context)
+    form = open_game(ChapterScene, "neuron").top.form
+    for widget in form.widgets:
+        form.focus(widget)
+        assert form.changes.hint == (texts.HINT_CHOOSE if isinstance(widget, ButtonRow) else texts.HINT_CHANGE)
+    assert {ButtonRow, ChoiceRow} <= set(map(type, form.widgets))
+
+
 def test_a_chapter_is_not_done_before_its_question_is_answered(open_game: Open, context: Context, monkeypatch):
     save_settings(context)
     for key in KEYS:
@@ -134,7 +149,7 @@ def test_a_chapter_is_not_done_before_its_question_is_answered(open_game: Open, 
             patch.setattr(type(scene.chapter), "verdict", lambda _: None)
             scene.chapter.tried, scene.chapter.complete = True, True
             scene.turn_to(WHY)
-            assert not progress.done(key)
+            assert progress.done(key) == (key == "own"), "only a list of steps is done when all of them are"
             patch.setattr(type(scene.chapter), "verdict", lambda _: 1)
             scene.turn_to(WHY)
             assert progress.done(key)

@@ -13,9 +13,9 @@ from game.core.scene import Push
 from game.drawing.canvas import Canvas
 from game.explain import explained
 from game.flight import networks
+from game.flight.credit import HELP
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.tooltip import draw_tooltip
@@ -171,3 +171,26 @@ def test_a_mark_on_the_way_of_coasting_says_whether_the_network_still_lands_from
         assert mark.now() == texts.EXPLAIN_COASTING_NOW[key].format(seconds=coasting[0])
     flown.path_preview.draw(canvas, view, 0.0)
     assert len(canvas.explained) == 1
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (800, 600)])
+def test_the_sentence_of_a_flight_keeps_clear_of_the_panel(shared: Driver, monkeypatch: pytest.MonkeyPatch, size):
+    drawn: list[tuple[str, pygame.FRect]] = []
+    text = Canvas.text
+
+    def noted(self: Canvas, words: str, *args, **options):
+        box = text(self, words, *args, **options)
+        drawn.append((words, pygame.FRect(box)))
+        return box
+
+    shared.resize(size)
+    shared.write_in("largest")
+    place(shared, 0, 12, 0, 0, 0, 0)
+    shared.frames(4)
+    monkeypatch.setattr(Canvas, "text", noted)
+    shared.app.draw()
+    head, canvas = play(shared)._head, shared.app.canvas.reading
+    assert head.panel == play(shared).flown.copilot_panel.box(canvas)
+    lines = [box for words, box in drawn if words and words in head.sentence and box.top < 60]
+    assert lines
+    assert all(not box.colliderect(head.panel) for box in lines)

@@ -1,6 +1,8 @@
 """The first ten flights: the ladder, the offer of help, a craft that hangs after every interruption, and the rescue."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pygame
@@ -14,13 +16,12 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
-from game.flight.credit import Credit
+from game.flight.credit import HELP, Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.outcomes import outcome_card
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.free import FreeFlight
-from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.sitting import CRASHES
 from game.scenes.play.tutorial import Tutorial
@@ -61,7 +62,6 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     settings = driver.app.context.settings
     driver.frames(2)
     assert texts.LADDER_TITLE.format(number=1, count=10) in written
-    assert texts.LADDER_BEGIN in written
     assert play(driver).flight.recording.spawn == "rung_1"
     end(driver, ON_PAD)
     assert settings.rung == 1
@@ -222,6 +222,10 @@ def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Op
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
     assert flight.hand.name == "NETWORK"
+    assert challenge.sentence(flight, controls) == texts.TUTORIAL_LONG.format(who=texts.THE_NETWORK)
+    flight.overridden = True  # only who was saved is said not to have crashed
+    challenge.follow(flight)
+    flight.overridden = False
     assert challenge.sentence(flight, controls) == texts.TUTORIAL_BROUGHT.format(who=texts.THE_NETWORK)
     flight.hand_over()  # the player may still take it back
     challenge.follow(flight)
@@ -240,13 +244,47 @@ def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: 
     player.key(pygame.K_PLUS)
     written.clear()
     player.frames(3)
-    assert any(word.startswith(texts.TUTORIAL_PATHS.split("{")[0]) for word in written)
+    assert any(word.startswith(texts.TUTORIAL_PATHS.split(".")[0]) for word in written)
     assert play(player).flight.shared
     assert play(player).flown.path_preview.asks
     player.hold("left", down=True)
     player.frames(60)
     assert challenge_of(player).lesson.name == "rescue"
     assert player.app.context.settings.assist == 0
+
+
+def test_nobody_hands_over_where_a_guard_is_to_be_seen(open_game: Open):
+    driver = at_lesson(open_game, "dial")
+    play(driver).retry()
+    driver.frames(2)
+    assert texts.HINT_HAND_OVER not in driver.hints()
+    driver.key(pygame.K_TAB)
+    driver.frames(30)
+    assert play(driver).waiting
+    assert (play(driver).flight.hand, challenge_of(driver).lesson.name) == (StickHolder.HUMAN, "dial")
+    driver.keys(pygame.K_PLUS, pygame.K_LEFT)
+    while challenge_of(driver).lesson.name != "rescue":
+        driver.skip()
+    driver.key(pygame.K_TAB)
+    driver.frames(2)
+    assert (play(driver).flight.hand, challenge_of(driver).through) == (StickHolder.HUMAN, False)
+
+
+def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
+    driver = at_lesson(open_game, "dial")
+    challenge, down = challenge_of(driver), Flight(0)
+    place(down.env, *ON_PAD)
+    while not down.over:
+        down.step(0)
+    card = outcome_card(down.env, 1.0)
+    for human, saved, title, reason in (
+        (1.0, 0, texts.TUTORIAL_DONE, texts.TUTORIAL_NOT_NEEDED),
+        (0.7, 0, texts.TUTORIAL_GOOD["land"], texts.TUTORIAL_HELPED.format(who=texts.THE_NETWORK, percent=30)),
+        (0.7, 1, texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED),
+    ):
+        landed = SimpleNamespace(share=human, network=play(driver).flight.network)
+        shown = challenge.card(replace(card, stepped_in=saved), landed, play(driver).credit)
+        assert (shown.title, shown.reason) == (title, reason), (human, saved)
 
 
 def test_who_skips_the_dial_skips_the_rescue(open_game: Open):

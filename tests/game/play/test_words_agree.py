@@ -114,7 +114,9 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     entry = Records(context.user_dir).entries()[-1]
     assert entry.outcome == outcome.name
     assert entry.alone == (not entry.bar)
-    assert who_and_when(entry).endswith(flew(play(driver).flight.recording.hands))
+    who = flew(play(driver).flight.recording.hands)
+    both = texts.LOGBOOK_SHARED.format(who=texts.THE_NETWORK)
+    assert who_and_when(entry).endswith(both if who == "both" else who)
     if outcome is Outcome.LANDED:
         assert entry.alone == (False not in page.counts)
         assert not entry.bar or any(barred(entry) in word or texts.PRACTICE in word for word in page.words), page.words
@@ -194,7 +196,8 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
     else:
         assert not page.counts
     if entry.landed:
-        assert f"({entry.score})" in page.words if entry.bar else f"{entry.score}" in page.words
+        points = texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}"
+        assert points.format(points=entry.score) in page.words
 
 
 @pytest.mark.parametrize("network", [OnlyFlies(), None])

@@ -115,9 +115,11 @@ def test_it_is_measured_beside_the_others_and_kept(
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
     path = shelf.Shelf(context.user_dir).new()
     watching.key(pygame.K_o)
+    written.clear()
     for _ in range(2):
         watching.press_on(texts.PILOTS_MEASURE)
         watching.wait(lambda: watching.top._worker is None)
+    assert texts.PILOTS_MEASURING[2].format(count=10) in written
     measured = shelf.Shelf(context.user_dir).measured()
     assert [each.name for each in measured] == ["pilot", "/scripted", "pilot"]  # the rival once
     assert measured[0].landed == measured[2].landed <= 0.8 < own.rivals(measured)["scripted"].landed

@@ -249,3 +249,12 @@ def test_a_lander_that_flies_cannot_be_dragged(watching: Driver):
     watching.post(pygame.MOUSEWHEEL, x=0, y=2)
     watching.key(pygame.K_q)
     assert not scene(watching).world.touched
+
+
+def test_the_frame_around_the_lander_goes_when_the_flight_goes_on(watching: Driver):
+    watching.key(pygame.K_g)
+    assert watching.form.focused is hand(watching)
+    watching.key(pygame.K_SPACE)
+    watching.frames(2)
+    assert not scene(watching).playback.stopped
+    assert watching.form.focused is not hand(watching)

@@ -14,6 +14,7 @@ import pytest
 from game.core import texts
 from game.drawing.tokens import HUMAN, NET, PALETTE, Colour
 from game.scenes.menus.settings import SettingsScene
+from game.shell.window import fitting
 from tests.support.driver import Driver
 from tests.support.window import ROOT, Window, screen, skip_without_a_screen, start
 
@@ -84,6 +85,14 @@ def test_a_game_that_begins_in_full_screen_covers_the_screen_and_goes_to_and_fro
         window.key("F11")
         window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window's old size")
         assert window.close() == 0
+
+
+@pytest.mark.parametrize(
+    ("desktop", "size"),
+    [((1920, 1080), (1280, 720)), ((1280, 720), (1280, 720)), ((800, 600), (800, 450)), ((1366, 700), (1244, 700))],
+)
+def test_the_first_window_fits_the_desktop(desktop: tuple[int, int], size: tuple[int, int]):
+    assert fitting(desktop) == size
 
 
 def test_interrupt_ends_the_game_without_a_traceback(display: str, tmp_path: Path):
