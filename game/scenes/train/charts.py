@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -283,10 +284,11 @@ class TrainingCharts(Charts):
             box = chart.box
             y = box.bottom + _DROP
             lines = chart.painted_caption.split("\n")
-            for line in lines if box.width >= _WIDE else lines[:1]:
-                for row in prose.lines(line, _SIZE, "regular", box.width - 8, canvas.scale)[:2]:
-                    canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
-                    y += _LEADING
+            rows = [prose.lines(line, _SIZE, "regular", box.width - 8, canvas.scale)[:2] for line in lines]
+            alone = box.width < _WIDE or len(rows[0]) > 1  # below it is the next chart
+            for row in rows[0] if alone else itertools.chain(*rows):
+                canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
+                y += _LEADING
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)
