@@ -256,10 +256,10 @@ class Tutorial(Challenge):
         elif self.lesson.guarded and flight.share < 1:
             title = texts.TUTORIAL_GOOD["land"]
             reason = texts.TUTORIAL_HELPED.format(who=who(flight.network), percent=100 - yours(flight.share))
-            card = replace(card, quality="")
         elif self.lesson.guarded:
             reason = texts.TUTORIAL_NOT_NEEDED
-        return replace(card, title=title, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
+        quality = card.quality if flight.share == 1 or not self.lesson.guarded else ""
+        return replace(card, title=title, reason=reason, quality=quality, score="", advice=texts.TUTORIAL_NEXT)
 
     # In words
 
