@@ -45,7 +45,7 @@ NAME = pygame.Rect(430, 345, 420, 25)  # the line under a network's name
 ANSWERS = pygame.Rect(425, 388, 50, 24)  # the first answer to a question, underlined
 LAMP = pygame.Rect(540, 28, 90, 16)
 CARD = pygame.Rect(420, 160, 180, 60)
-WORDS = {"Save as film": (1098, 189), "Save run": (1211, 692), "Why?": (720, 150)}  # pixels, in the first window
+WORDS = {"Save as film": (1098, 189), "Save run": (1211, 692), "One lesson": (720, 150)}  # pixels, in the first window
 
 
 @pytest.fixture(scope="module")
@@ -197,7 +197,7 @@ def test_a_whole_evening_from_an_empty_home(app: Path, home: Path, display: str)
         window.key("Return")
         window.wait_for(lambda: any("--multiprocessing-fork" in each for each in children(window)), "a worker", SLOW)
         window.wait_for(lambda: shows(window, NET, pygame.Rect(40, 400, 700, 300)), "the first curves", SLOW)
-        click_until(window, "Why?", lambda: rows_of_text(window, CODE) >= 4)  # the lines that took the step
+        click_until(window, "One lesson", lambda: rows_of_text(window, CODE) >= 4)  # the lines that took the step
         window.key("Escape")
         click_until(window, "Save run", lambda: shows(window, HUMAN, NAME))
         window.key("Return")
