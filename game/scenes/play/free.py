@@ -37,10 +37,10 @@ class FreeFlight(Challenge):
         self._settings = settings
         self._misses = 0  # in a row, on this rung
         self._climbed = False
-        self._ladder = True  # whether the present flight began on it
+        self.word()
 
     def word(self) -> None:
-        self.opening = "" if self._ladder else texts.BEGIN
+        self.opening = texts.BEGIN
 
     def recall(self, entries: Iterable[Entry]) -> None:
         """Give players of before a place on the ladder, by their landings."""
@@ -54,10 +54,7 @@ class FreeFlight(Challenge):
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         pads, self.hands, usual = self.chosen()
-        flight = Flight(seed, network, spawn or usual, pads=pads, hands=self.hands, easing=self.easing)
-        self._ladder = rung_of(flight) is not None
-        self.word()
-        return flight
+        return Flight(seed, network, spawn or usual, pads=pads, hands=self.hands, easing=self.easing)
 
     def dial(self, settings: Settings) -> Settings:
         return settings
