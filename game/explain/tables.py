@@ -11,6 +11,7 @@ from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, SMALL, STEP, TITLE, Colour
 
+_BAR: Final = 2.5  # height of a bar
 _APART: Final = 18.0  # points between two columns of a table
 _PAD: Final = 4.0  # above and below a line of it
 
@@ -20,7 +21,7 @@ class Line:
     """Line of a table: a name and its figures, and for who asks, what they are and how they come about.
 
     Attributes:
-        bars: for each figure, the length of a bar below it, 0 to 1, or where it begins and ends; empty for none.
+        bars: for each figure, where a bar below it begins and ends, 0 to 1; empty for none.
 
     """
 
@@ -28,7 +29,7 @@ class Line:
     what: str = ""
     now: str = ""
     lit: bool = False
-    bars: Sequence[float | tuple[float, float]] = ()
+    bars: Sequence[tuple[float, float]] = ()
 
 
 def table(head: Sequence[str], lines: Callable[[], Sequence[Line]]) -> Callable[[Cursor], None]:
@@ -58,23 +59,24 @@ def _write_line(cursor: Cursor, line: Line, widths: Sequence[float]) -> None:
     row = replace(cursor, y=top + _PAD, size=SMALL, colour=INK if line.lit else mix(MUTE, INK, 0.35))
     _write_cells(row, line.cells, widths)
     right = cursor.right
-    for width, share in zip(widths[::-1], line.bars[::-1], strict=False):
+    for width, (begin, end) in zip(widths[::-1], line.bars[::-1], strict=False):
         if cursor.canvas:
-            left, top_of, wide, high = right - width + _APART, row.y + 1, width - _APART, 2.5
-            colour = NET if line.lit else mix(FAINT, NET, 0.4)
-            if isinstance(share, tuple):
-                cursor.canvas.bar((left, top_of, wide, high), 0.0, colour)
-                if share[1] > share[0]:
-                    length = max((share[1] - share[0]) * wide, high)
-                    cursor.canvas.bar((left + share[0] * wide, top_of, length, high), 1.0, colour)
-            else:
-                cursor.canvas.bar((left, top_of, wide, high), max(share, 0.02), colour)
+            left, wide, colour = right - width + _APART, width - _APART, NET if line.lit else mix(FAINT, NET, 0.4)
+            cursor.canvas.bar((left, row.y + 1, wide, _BAR), 0.0, colour)
+            if end > begin:
+                length = max((end - begin) * wide, _BAR)
+                cursor.canvas.bar((left + begin * wide, row.y + 1, length, _BAR), 1.0, colour)
         right -= width
     cursor.y = row.y + (STEP if line.bars else _PAD)
     if cursor.canvas:
         cursor.canvas.line((cursor.left, cursor.y), (cursor.right, cursor.y), LINE)
         if line.what:
             cursor.canvas.explain((cursor.left, top, cursor.width, cursor.y - top), line.what, partial(str, line.now))
+
+
+def from_left(share: float) -> tuple[float, float]:
+    """Return where the bar of a share begins and ends; the smallest can be seen, too."""
+    return 0.0, max(share, 0.02)
 
 
 def from_zero(value: float, low: float, high: float) -> tuple[float, float]:

@@ -26,7 +26,7 @@ from game.digits.pictures import GREY, picture
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import TITLE
 from game.explain.figures import number, points, signed
-from game.explain.tables import Line, figure_rows, table
+from game.explain.tables import Line, figure_rows, from_left, table
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.flight import happened_frame, moment_frame, said_action
 from game.scenes.lesson.frame import CodeWalk, Frame, in_points, in_points_of_reward
@@ -134,7 +134,7 @@ def digit_frame(
     for each in range(10):
         figures = [(signed if kind == BACK else number)(float(values[each])) for kind, values in columns]
         rows = figure_rows(*((helps[kind], written) for (kind, _), written in zip(columns, figures, strict=True)))
-        bars = [float(share[each]) for share in shares]
+        bars = [from_left(float(share[each])) for share in shares]
         lines.append(Line((str(each), *figures), helps[columns[-1][0]], rows, each == digit, bars))
     head = [heads[0], *(heads[kind] for kind, _ in columns)]
 

@@ -20,7 +20,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, NET, SMALL
 from game.explain.figures import decimal, number, points, signed
-from game.explain.tables import Line, Part, figure_rows, formula, table
+from game.explain.tables import Line, Part, figure_rows, formula, from_left, table
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame, in_points, pulled
 from game.scenes.lesson.step import LearningStep, Pulls
@@ -91,7 +91,7 @@ def _values(lesson: Lesson) -> list[Line]:
     return [
         Line((said_action(action), *map(points, row)), texts.LESSON_NEXT_HELP,
              figure_rows((texts.LESSON_OWN_SCALE, " ".join(number(value * scale) for value in row))),
-             lit=action == lesson.best, bars=[(value - low) / span for value in row])
+             lit=action == lesson.best, bars=[from_left((value - low) / span) for value in row])
         for action, row in enumerate(shown.tolist())
     ]  # fmt: skip
 
@@ -268,6 +268,6 @@ class AfterFrame(Frame):
         (before, _, target), most = self._values, max(1e-12, *map(abs, self._found))
         return [
             Line((word.format(count=self.step.examples - (row > 0)), pulled(pull)), help_,
-                 lit=pull * (target - before) >= 0, bars=[abs(pull) / most])
+                 lit=pull * (target - before) >= 0, bars=[from_left(abs(pull) / most)])
             for row, (pull, (word, help_)) in enumerate(zip(self._found, texts.LESSON_PULL_PARTS, strict=True))
         ]  # fmt: skip

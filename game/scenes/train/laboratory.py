@@ -34,6 +34,7 @@ from game.training.run_settings import KnobDescription, figure, label
 from game.ui.panel import Column
 
 FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
+_JUDGED: Final = 20  # frames after which an experiment is judged anew
 _WAVERS: Final = 10  # percent by which one that has recovered may fall behind its twin
 
 
@@ -76,7 +77,7 @@ class Laboratory:
         self.chosen: Chosen | None = None
         self.came: Verdict | None = None
         self._recovered = False
-        self.said = dict.fromkeys(("differs", "figures", "came", "why", "measured"), "")
+        self.said = dict.fromkeys(("differs", "figures", "came", "measured"), "")
 
     def open(self) -> None:
         """Show what has come of the experiment that flies, or what there is to try."""
@@ -105,11 +106,17 @@ class Laboratory:
             "differs": listed_differences(run.config, twin.config),
             "figures": figures if self.came else "",
             "came": came_words(self.came, chosen.guess) or ("" if twin.problem else early or texts.LAB_TOO_EARLY),
-            "why": why(self.came, chosen.experiment.sabotage),
             "measured": measured(chosen.experiment.sabotage)
             if self.came and chosen.experiment.sabotage and run.config == PRESETS[MEASURED]
             else "",
         }
+
+    def update(self, frame: int) -> None:
+        """Judge both runs now and then; after it, note whether the experiment has recovered at the moment shown."""
+        if frame % _JUDGED == 0:
+            self.follow()
+        if self.came:
+            self._recovered = has_recovered(self._landed(), was=self._recovered)
 
     # Pages
 
@@ -184,8 +191,8 @@ class Laboratory:
         column.words([(texts.LAB_KEEP_RUN, go_on), (texts.LAB_KEEP_EXPERIMENT, take), (texts.LAB_KNOBS, self.close)])
 
     def _sentence(self, subject: str) -> str:
-        if subject == "why" and self.chosen and self.said["why"]:
-            self._recovered = has_recovered(self._landed(), was=self._recovered)
+        assert self.chosen is not None
+        if subject == "why":
             return why(self.came, self.chosen.experiment.sabotage, recovered=self._recovered)
         return self.said[subject]
 

@@ -46,7 +46,6 @@ from game.ui.rows import RunRow
 from game.ui.virtual_pointer import VirtualPointer
 
 _BEHIND: Final = 0.72  # cover of the swarm behind an edited network
-_JUDGED: Final = 20  # frames after which an experiment is judged anew
 
 
 class TrainScene(TrainingScene):
@@ -220,8 +219,7 @@ class TrainScene(TrainingScene):
         looked |= self.charts.look(run.history, self._beside, self._caption)
         self.landers.update(still)
         self._frame += 1
-        if self._frame % _JUDGED == 0:
-            self.laboratory.follow()
+        self.laboratory.update(self._frame)
         self.inside.update()
         # Tasks that take a millisecond or two take turns, one per frame.
         self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
