@@ -41,8 +41,9 @@ class GameWindow:
             if "SDL_VIDEODRIVER" not in os.environ and not _is_seen():
                 raise pygame.error(texts.NO_VIDEO_DEVICE)
             pygame.font.init()
-            windowed = fitting(pygame.display.get_desktop_sizes()[0]) if _is_seen() else VIEW_SIZE
-            size = pygame.display.get_desktop_sizes()[0] if full_screen else windowed  # see `_place`
+            desktop = pygame.display.get_desktop_sizes()[0]
+            windowed = fitting(desktop) if _is_seen() else VIEW_SIZE
+            size = desktop if full_screen else windowed  # see `_place`
             self._window = pygame.Window(texts.GAME, size, resizable=True, fullscreen_desktop=full_screen)
             self._window.get_surface()
         except pygame.error as error:

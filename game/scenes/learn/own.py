@@ -6,6 +6,7 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from ai.pilots.shelf import Shelf
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
+from game.core.kept import Kept
 from game.core.scene import Route, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
@@ -34,6 +36,7 @@ from game.ui.panel import Column
 # Where each step is done; a race is begun here.
 STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": "", "file": ""}
 _INDENT: Final = 32.0
+_HALVES: Final[Kept[float | None]] = Kept(1)  # a page asks twice
 _HALF: Final = 0.5  # share of flights that the question asks for
 _FLIGHTS: Final = 100  # flights that a share is taken of, once there are so many
 _ANSWERS: Final = (5.0, 60.0, 600.0, 3600.0)  # seconds of the answers
@@ -136,14 +139,7 @@ class OwnChapter(Chapter):
     @property
     def half(self) -> float | None:
         """Seconds of training after which half of the latest run's flights landed; None if that is not known."""
-        if not self._runs:
-            return None
-        try:
-            history = History.read(self._runs[0].folder)
-        except ModelFormatError:
-            return None
-        reached = np.flatnonzero((history["success"] >= _HALF) & (history["episodes"] >= _FLIGHTS))
-        return float(history["seconds"][reached[0]]) if len(reached) else None
+        return _HALVES.get(self._runs[0].folder, partial(_half_of, self._runs[0].folder)) if self._runs else None
 
     def verdict(self) -> int | None:
         """Return the answer next to the time that half of the flights took, by their ratio; None before they landed."""
@@ -191,3 +187,13 @@ class OwnChapter(Chapter):
 
 def _step(done: bool, key: str, **figures: str) -> Step:
     return Step(done, texts.LEARN_OWN_TOLD[key].format(**figures))
+
+
+def _half_of(folder: Path) -> float | None:
+    """Return the seconds after which half of a run's flights landed, by its history; None if they never did."""
+    try:
+        history = History.read(folder)
+    except ModelFormatError:
+        return None
+    reached = np.flatnonzero((history["success"] >= _HALF) & (history["episodes"] >= _FLIGHTS))
+    return float(history["seconds"][reached[0]]) if len(reached) else None
