@@ -53,7 +53,7 @@ from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.networks import on_a_link
-from tests.support.pen import SEVEN, pad_of, stroke
+from tests.support.pen import pad_of, stroke
 from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
@@ -144,20 +144,6 @@ def drawn(driver: Driver) -> None:
     rect = pad_of(driver)
     stroke(driver, [(rect.x + x * rect.w, rect.y + y * rect.h) for x, y in ((0.3, 0.2), (0.7, 0.2), (0.5, 0.8))])
     driver.frames(30)
-
-
-def handed_in(driver: Driver) -> None:
-    """Draw a seven in the quiz, and have it read."""
-    stroke(driver, SEVEN)
-    driver.key(pygame.K_RETURN)
-    driver.frames(5)
-
-
-def answered(driver: Driver) -> None:
-    """Say what somebody else wrote."""
-    handed_in(driver)
-    driver.keys(pygame.K_RETURN, pygame.K_3)
-    driver.frames(5)
 
 
 def frame(number: int) -> Happens:
@@ -275,8 +261,6 @@ STATES = [
     Stop("modern inside", "inside", partial(inside, 3)),
     Stop("modern inside", "code", in_code),
     Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
-    Stop("QuizScene", "read", handed_in),
-    Stop("QuizScene", "answered", answered),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
         for key, labels, steps in (

@@ -134,7 +134,6 @@ class DigitsScene(PanelScene):
         left.words([
             (texts.DIGITS_UNDO, self.pad.undo),
             (texts.DIGITS_CLEAR, self.pad.clear),
-            (texts.DIGITS_QUIZ, lambda: self._with_chosen(partial(push, "quiz"))),
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
             (texts.DIGITS_DREAM, self._dream),
         ])  # fmt: skip
