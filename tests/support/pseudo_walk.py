@@ -204,12 +204,6 @@ def inside(steps: int, driver: Driver) -> None:
     driver.frames(5)
 
 
-def in_code(driver: Driver) -> None:
-    """Look at the code of a convolution."""
-    driver.key(pygame.K_c)
-    driver.frames(5)
-
-
 def half_way(driver: Driver) -> None:
     """Fly with a trigger pulled half way."""
     driver.frames(2)
@@ -259,7 +253,6 @@ STATES = [
     Stop("DigitsScene", "a switch", switched),
     *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
     Stop("modern inside", "inside", partial(inside, 3)),
-    Stop("modern inside", "code", in_code),
     Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
