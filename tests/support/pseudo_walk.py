@@ -190,14 +190,6 @@ def tried(*labels: str, steps: int) -> Happens:
     return try_it
 
 
-def switched(driver: Driver) -> None:
-    """Draw a seven, and switch the last step of its preprocessing off."""
-    drawn(driver)
-    driver.press_on(texts.DIGITS_SEES)
-    driver.press_on(texts.DIGITS_STAGES["centre"])
-    driver.frames(2)
-
-
 def inside(steps: int, driver: Driver) -> None:
     """Follow a unit some steps on."""
     driver.keys(*[pygame.K_n] * steps)
@@ -250,7 +242,6 @@ STATES = [
     Stop("PhysicsStepScene", "a step", taken_apart),
     *(Stop("a digit's lesson", f"frame {number + 1}", frame(number)) for number in range(7)),
     Stop("DigitsScene", "a digit", drawn),
-    Stop("DigitsScene", "a switch", switched),
     *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
     Stop("modern inside", "inside", partial(inside, 3)),
     Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
