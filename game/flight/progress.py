@@ -1,6 +1,6 @@
 """Progress of the player: what they have flown, won and read, which can be put away and brought back.
 
-Networks, demonstrations, drawings and settings of taste are no progress, and stay.
+Networks, drawings and settings of taste are no progress, and stay.
 """
 
 from __future__ import annotations

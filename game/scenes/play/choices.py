@@ -100,8 +100,6 @@ class ChoicesScene(PanelScene):
         self._share(right, "pace", texts.PACE, PACES, texts.CHOICES_PACE_HELP)
         key = self.context.controls.word(Command.MODE)
         self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))
-        if self._free:
-            self._toggle(right, "teach", *texts.CHOICES_TEACH)
 
     def _set_rung(self, rung: float) -> None:
         self._set("rung", round(rung))
