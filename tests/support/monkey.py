@@ -49,7 +49,7 @@ from tests.support.tour import scene_types, stock
 
 ALL = {**SCREENS, **FLOWN}
 WAYS = [*ALL, *(name for name in OVER_OTHERS if "Dialog" in name)]  # into any scene
-_OF_FILES = {"ReplayScene", "StudyScene", "friend"}  # scenes for which files are written and read
+_OF_FILES = {"ReplayScene", "friend"}  # scenes for which files are written and read
 _DEEPEST = 7  # scenes one above the other
 _JUMP, _JUMP_HOME = 0.015, 0.15  # how often it is put somewhere else, and from the menu, where it soon would quit
 _LISTED = 25  # acts before a fault that are listed

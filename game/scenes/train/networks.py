@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -17,7 +16,6 @@ from game.core.scene import Pop, Push, Transition, push
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.flight import networks
-from game.flight.study_runs import studies
 from game.scenes.menus.dialogs import NameDialog
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
@@ -97,9 +95,7 @@ class NetworksScene(PanelScene):
         context = self.context
         own = self._library.runs()
         known = networks.folders(context.models_dir, context.user_dir)
-        others = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
-        # What a study has found stays as it is: to train it further, there is the command.
-        shipped = [replace(run, resumable=run.resumable and self._is_shipped(run)) for run in others]
+        shipped = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
         self._names = {folder: name for name, folder in known.items()}
         self.items = [*own, *shipped]
         kept = texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
@@ -123,7 +119,7 @@ class NetworksScene(PanelScene):
         panel.aside(self.line)
         panel.gap(4)
         left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
-        left.add(partial(write_headings, texts.RUNS_COLUMNS, _CELLS))
+        left.add(partial(_write_headings, texts.RUNS_COLUMNS, _CELLS))
         rows = [row(run, own=not self._is_shipped(run)) for run in self.items]
         index = self.items.index(self.chosen) if self.chosen else 0
         self._list = left.listing(
@@ -133,8 +129,6 @@ class NetworksScene(PanelScene):
         more: list[tuple[str, OnPress]] = []
         if deleted := self._library.last_deleted:
             more.append((texts.RUN_RESTORE.format(name=deleted), self._restore))
-        if not self._choose and studies(self.context.user_dir):
-            more.append((texts.STUDY_OPEN, lambda: push("study")))
         left.words([*more, (texts.BACK, Pop)])
         self._describe_chosen(self._beside)
 
@@ -259,7 +253,7 @@ class NetworksScene(PanelScene):
         self.context.note(_result(copy))
 
 
-def write_headings(words: Sequence[str], columns: Sequence[float], cursor: Cursor) -> None:
+def _write_headings(words: Sequence[str], columns: Sequence[float], cursor: Cursor) -> None:
     """Write the headings of a list: the first on the left, the others over the ends of their columns."""
     small = cursor.in_style(LABEL, MUTE, "medium")
     if canvas := cursor.canvas:
