@@ -262,9 +262,9 @@ class TrainScene(TrainingScene):
 
     @property
     def _worth_keeping(self) -> bool:
-        if self.run.alive:
-            return len(self.run.history) > 0
-        return self.run.runs == 0 and self.left is not None and bool(self.left.success)  # it has landed
+        if self.run.runs:
+            return (self.run.alive or self.run.kept) and len(self.run.history) > 0
+        return self.left is not None and bool(self.left.success)  # it has landed
 
     @property
     def _suggestion(self) -> str:
@@ -327,8 +327,8 @@ class TrainScene(TrainingScene):
         """Fly an experiment beside a healthy twin; the run that goes on is put among the player's networks."""
         config, seed = self.knobs.config, self.knobs.seed
         changed = experiment.applied(config)
-        if self.run.twin is None:
-            self._keep()
+        if self.run.twin is None and not self._keep():
+            return
         self._was_running = False
         if note := self.run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
             self.context.note(note)

@@ -204,23 +204,6 @@ def test_flights_of_one_moment_are_distinguished_also_by_two_games(kept: Records
     assert not kept.problem
 
 
-def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: Records):
-    line = kept.keep(fly(), NOON)
-    held = (kept.folder / line.file).read_bytes()
-    assert kept.why_gone(line) == ""
-    assert kept.throw_away(line.file)
-    assert kept.kept() == set()
-    assert kept.thrown() == {line.file}
-    assert kept.why_gone(line) == texts.FLIGHT_THROWN
-    assert len(kept.entries()) == 1
-    assert not kept.throw_away(line.file)
-    assert kept.problem
-    assert kept.bring_back(line.file)
-    assert kept.problem == kept.why_gone(line) == ""
-    assert (kept.folder / line.file).read_bytes() == held
-    assert not kept.bring_back(line.file)
-
-
 def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
     lines = [entry(score=score, file=f"{score}.json") for score in (40, 20, 90, 10, 30, 50)]
     lines += [entry(score=99, alone=False, file="helped"), entry("CRASHED", score=99, file="crash"), entry(score=99)]

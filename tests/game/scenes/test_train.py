@@ -75,19 +75,18 @@ def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
 
 
 @pytest.mark.parametrize("share", [0.98, None])
-def test_start_keeps_what_was_left_if_it_lands_and_puts_anything_else_where_it_can_be_brought_back(
+def test_start_keeps_what_was_left_if_it_lands(
     train: Driver, open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, share: float | None
 ) -> None:
     learn(train)
     train.app.close()
-    claim = Library.claim
-    monkeypatch.setattr(Library, "claim", lambda library: (left := claim(library)) and replace(left, success=share))
+    left = Library.rescued
+    monkeypatch.setattr(Library, "rescued", lambda library: (run := left(library)) and replace(run, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
     library = driver.top.library
     learn(driver)
     assert len(library.runs()) == (share is not None)
-    assert bool(library.last_deleted) == (share is None)
 
 
 def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver) -> None:
