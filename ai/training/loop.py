@@ -7,6 +7,7 @@ around it: schedules of the environment, episodes that end and begin, statistics
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Generator
 from copy import deepcopy
 from dataclasses import dataclass
@@ -41,6 +42,7 @@ class Progress:
     """Progress of a run after one decision in every environment."""
 
     decisions: int  # of single landers
+    steps: int  # of their physics: a decision is several
     updates: int
     episodes: int
     success_rate: float  # of the last 100 episodes, exploration included
@@ -49,6 +51,7 @@ class Progress:
     mean_q: float
     epsilon: float
     stage: int  # of the curriculum
+    steps_per_second: float  # over the last hundred decisions, by the clock
     shares: tuple[float, ...]  # of the last 100 episodes that ended in outcome 1, 2, 3 and 4
     parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
     evaluation: Score | None = None  # when one is finished
@@ -104,6 +107,7 @@ class Training(Run):
         self.statistics = EpisodeStatistics(self.env.num_envs)
         self.best: Score | None = None
         self.best_network: Network | None = None
+        self._moments: deque[float] = deque(maxlen=100)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
         self._validated: DeepQAgent | None = None  # while its flights are under way
         self._flights: Trial[Score] | None = None
@@ -148,10 +152,17 @@ class Training(Run):
         self._held = np.where(result.ended, 0, actions)
         evaluation = self._measure(before)
         return Progress(
-            agent.decisions, agent.gradient_steps, self.episodes, statistics.success, statistics.mean_return,
-            agent.loss, agent.mean_q, epsilon, self.env.stage, statistics.shares, statistics.parts, evaluation,
-            self.best, self.config.env,
+            agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
+            statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
+            statistics.shares, statistics.parts, evaluation, self.best, self.config.env,
         )  # fmt: skip
+
+    def _pace(self) -> float:
+        """Physics steps a second, by the moments of the last hundred decisions."""
+        self._moments.append(self.clock())
+        spent = self._moments[-1] - self._moments[0]
+        steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
+        return steps / spent if spent > 0 else 0.0
 
     def apply_live(self, config: Config) -> None:
         """Take over the live knobs of another configuration; what was paid otherwise is forgotten."""

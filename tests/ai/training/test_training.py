@@ -35,11 +35,13 @@ def test_evaluating_changes_nothing_about_the_training():
 
 def test_progress_counts_what_happened():
     training = Training(SMALL, 0, **QUICK)
+    training.clock = map(float, count(0, 0.5)).__next__
     assert isinstance(training.env, LanderEnv)
     for _ in range(80):
         progress = training.advance()
         assert not training._held[training.env.steps == 0].any(), "a new flight holds no action yet"
-    assert progress.decisions == 80 * 8
+    assert progress.steps_per_second == 8 * 4 / 0.5, "by the clock it is given"
+    assert (progress.decisions, progress.steps) == (80 * 8, 80 * 8 * 4)
     assert progress.updates == training.agent.gradient_steps
     assert progress.episodes == training.episodes > 0
     assert 0.0 <= progress.success_rate <= 1.0
@@ -137,15 +139,15 @@ def test_a_run_is_kept_with_what_it_is(tmp_path, monkeypatch):
 
 def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first():
     for limit, decisions, seconds in (
-        (Limit(moment=80), 80, 10.0),
-        (Limit(seconds=2.5, moment=800), 24, 3.0),
-        (Limit(seconds=500.0, moment=40), 40, 5.0),
+        (Limit(moment=80), 80, 20.0),
+        (Limit(seconds=5.0, moment=800), 24, 6.0),
+        (Limit(seconds=500.0, moment=40), 40, 10.0),
     ):
         training = Training(SMALL, 0, **QUICK)
         training.clock = map(float, count()).__next__
         assert [progress.decisions for progress in limit.run(training)][-1] == decisions
         assert limit.share(training) == 1.0
-        assert training.seconds == seconds, "a step looks at the clock twice"
+        assert training.seconds == seconds, "a step looks at the clock twice, and once for its pace"
 
 
 def test_a_curriculum_run_climbs_its_stages():
