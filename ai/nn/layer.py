@@ -37,7 +37,6 @@ class Layer(ABC):
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
-    formerly: Mapping[str, Any] = {}  # settings of earlier versions, and the only value that can still be read
     inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
     outputs: int | ImageShape | None = None
     shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
