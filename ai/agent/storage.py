@@ -6,7 +6,7 @@ Its replay buffers and its random generator are not kept.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -17,12 +17,10 @@ from ai.environment import Floats
 from ai.files import (
     NETWORK,
     FolderKind,
-    array_like,
     atomic_folder,
     check_header,
     count_of,
     inside,
-    number_of,
     read_arrays,
     read_json,
     recover_folder,
@@ -41,11 +39,8 @@ VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
-_OLD: Final = FolderKind("tranquility safety critic", (), {"network": NETWORK})  # earlier versions kept one beside it
-_PARTS: Final = {"online": NETWORK, "target": NETWORK, "guardian": _OLD}
-_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), _PARTS)
+_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
 KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
-_FORMERLY: Final = "train_count"  # the name of `gradient_steps` in older files
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
@@ -102,13 +97,13 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
 def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) -> A:
     """Make an agent as the file of settings and counts describes it."""
     described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, (VERSION,))
-    settings = AgentConfig.renamed(described["config"])
+    settings = dict(described["config"])
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
     features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
     agent = make(features, actions, AgentConfig.from_json(settings))
     agent.run_settings = run_settings
     agent.decisions = count_of(described["decisions"])
-    agent.gradient_steps = count_of(described["gradient_steps" if "gradient_steps" in described else _FORMERLY])
+    agent.gradient_steps = count_of(described["gradient_steps"])
     if agent.normalizer:
         agent.normalizer.load(described["scale"])
     return agent
@@ -136,30 +131,3 @@ def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, A
             raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
 
     return read_arrays(path, len(shapes) * values.size * 8 + _SLACK, expect)
-
-
-def agent_state(agent: DeepQAgent) -> dict[str, Any]:
-    """Return copies of all that an agent's learning goes on from, besides its settings and replay buffers."""
-    normalizer = agent.normalizer.to_json() if agent.normalizer else None
-    numbers = {name: getattr(agent, name) for name in ("decisions", "gradient_steps", "loss", "mean_q")}
-    networks = {"online": agent.online.values.copy(), "target": agent.target.values.copy()}
-    learning = {"rng": agent.rng.bit_generator.state, "optimizer": agent.optimizer.state(), "normalizer": normalizer}
-    return numbers | networks | learning | {"n_step": agent.n_step.state(), "episodes": agent.episodes.state()}
-
-
-def load_agent_state(agent: DeepQAgent, state: Mapping[str, Any], num_envs: int) -> None:
-    """Let an agent go on from what `agent_state` returned, in an environment of so many slots.
-
-    Raises KeyError, TypeError, OverflowError or ValueError for what no such agent can have been.
-    """
-    agent.rng.bit_generator.state = state["rng"]
-    for name, network in (("online", agent.online), ("target", agent.target)):
-        network.values = array_like(network.values, state[name], name)
-    agent.optimizer.load_state(state["optimizer"], agent.online.values)
-    if agent.normalizer:
-        agent.normalizer.load(state["normalizer"])
-    observation = np.zeros((num_envs, agent.num_features), np.float32)
-    agent.n_step.load_state(state["n_step"], observation)
-    agent.episodes.load_state(state["episodes"], observation)
-    agent.decisions, agent.gradient_steps = count_of(state["decisions"]), count_of(state["gradient_steps"])
-    agent.loss, agent.mean_q = float(number_of(state["loss"])), float(number_of(state["mean_q"]))

@@ -14,7 +14,6 @@ from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
 from ai.lander.route import Route
-from game.flight.handicap import OWN, Handicap
 from game.flight.networks import DECISION_STEPS, Policy, QPolicy, decide, decision_steps
 from game.flight.poses import Poses
 
@@ -37,11 +36,10 @@ class Flight:
     """Flight of one lander, by a person, by a network, by both in turns, or by both together.
 
     Args:
-        seed: random seed of the start, the ground and the handicap.
+        seed: random seed of the start and the ground.
         network: the network that can take or share the stick.
         spawn: kind of start.
         pads: 1 on a plain, or 3 among hills.
-        hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
         shares: whether the network may share the stick, and not only take it.
         easing: changes of the rules that give the pilot more room.
@@ -67,7 +65,6 @@ class Flight:
         spawn: str = "random",
         *,
         pads: int = 1,
-        hands: str = OWN,
         mission: str = "",
         shares: bool = True,
         easing: Easing = AS_IT_IS,
@@ -84,7 +81,6 @@ class Flight:
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None
         self.alone: Decision | None = None
-        self._hands = Handicap(hands, seed, DECISION_STEPS)
         self._held_for = self._yours = 0
         self.guard: Guard | None = None
         self.copilot: CoPilot | None = None
@@ -143,23 +139,8 @@ class Flight:
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
-        self.recording.gravity = tuple(change for change in source.gravity if change[0] <= step)
         self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
-        self._pull(self.recording.gravity_at(step))
         self.rest()
-
-    def set_gravity(self, share: float) -> None:
-        """Set gravity to a share of the normal one, from the next step on."""
-        recording, step = self.recording, len(self.recording.actions)
-        if share == recording.gravity_at(step):
-            return
-        recording.gravity = tuple(change for change in recording.gravity if change[0] < step)
-        if share != recording.gravity_at(step):
-            recording.gravity += ((step, share),)
-        self._pull(share)
-
-    def _pull(self, share: float) -> None:
-        self.env.gravity = share * self.env.params.gravity
 
     def rest(self) -> None:
         """Stop interpolation, so that the lander is drawn at its present pose."""
@@ -220,8 +201,7 @@ class Flight:
         if by is StickHolder.HUMAN:
             if self.steered:
                 held, shares = held - held % 3 + int(_STEERING.act(self.observation)[0]) % 3, None
-            self.asked = self._hands.ask(held, self.observation)
-            shares = shares if self.asked == held else None
+            self.asked = held
         if self.guard and self.guard.acts:
             return self.guard.choose(by, shares)
         if by is StickHolder.NETWORK:
