@@ -129,7 +129,7 @@ class ChoiceChapter(Chapter):
         self.changed = True
 
     def update(self) -> None:
-        if self.first is None or self.over:
+        if self.first is None or not self.running:
             return
         if self._steps % DECISION_STEPS == 0 and self._steps:
             self._decide()

@@ -20,6 +20,7 @@ from game.ui.context import Context
 from game.ui.listing import ListRow, Row
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
+from game.ui.widget import OnPress
 
 _KEYS: Final = tuple(PATH)
 _LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
@@ -82,7 +83,7 @@ class LearnScene(PanelScene):
     def _describe_own(self, column: Column) -> None:
         """Add what to do with a network of one's own: each leads to where it is done, and is ticked once it was."""
         self.own = done_with_own(self.context)
-        doors = {
+        doors: dict[str, OnPress] = {
             "train": partial(push, "train"), "land": partial(push, "runs"), "hand": partial(push, "play"),
             "file": lambda: push("pilots", partial(own_pilots.take, self.context)),
         }  # fmt: skip
