@@ -1,8 +1,8 @@
-"""Session of landers: what is seen of them, checkpoints to go back to, lessons, demonstrations, edits by hand."""
+"""Session of landers: what is seen of them, checkpoints to go back to, lessons, demonstrations."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
@@ -15,7 +15,6 @@ from ai.lander.environment import LanderEnv
 from ai.pilots.own import pay_by
 from ai.training.config import Config, in_force
 from ai.training.demonstrations import read, teach
-from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
@@ -44,7 +43,7 @@ class LanderSession(Session[Training]):
         self.history.reward_scale = training.config.reward_scale
         training.on_step = self._on_step
         training.validation_pace = 1 + self.env.num_envs // 256
-        self._explanations, self._editor = Explanations(training), NetworkEditor(training.agent)
+        self._explanations = Explanations(training)
         self._swarm_state = self._swarm_state_now()
         self._shown_at = 0.0
         self._point_at = 0
@@ -83,11 +82,6 @@ class LanderSession(Session[Training]):
         """Decisions between checkpoints: sparser as the run gets longer, so that the first hours keep them all."""
         return max(40 * self.env.num_envs, 2_500, self.training.agent.decisions // 50)
 
-    @property
-    def keeps_still(self) -> bool:
-        """Whether a network is edited: that is only looked at, until it learns on from there."""
-        return self.training.agent.paused
-
     def state(self) -> State:
         due = {"point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning}
         return due | {"learned_from": sorted(self._learned_from), "paid_by": self.paid_by}
@@ -115,7 +109,7 @@ class LanderSession(Session[Training]):
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self.record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at and not self.keeps_still:
+        if progress.decisions >= self._checkpoint_at:
             self.record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
@@ -129,15 +123,8 @@ class LanderSession(Session[Training]):
 
     def go_back(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
-        self._editor.forget()
         self.training.diverged = True
         self.history.checkpoints[-1].restore(self.training.agent)
-
-    def end(self) -> None:
-        """Keep what has not been kept, without an edit that was only looked at."""
-        if self.keeps_still:
-            self._editor.undo(every=True)
-        super().end()
 
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = self._swarm_state_now()
@@ -154,7 +141,7 @@ class LanderSession(Session[Training]):
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
-        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
+        learnt = 1.0 if agent.gradient_steps > self._began_learning else np.nan
         _, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
@@ -195,36 +182,13 @@ class LanderSession(Session[Training]):
         """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
         self.messages.append(self._explanations.explain(slot, decisions))
 
-    def _edit(self, edit: Edit) -> None:
-        """Edit the network."""
-        self._edited(lambda editor: editor.apply(edit))
-
-    def _undo(self, every: bool = False) -> None:
-        """Undo the last edit, or every one since the network was as it had learnt."""
-        self._edited(lambda editor: editor.undo(every=every))
-
-    def _learn_on(self) -> None:
-        """Learn again, from the network as it was edited."""
-        self._edited(NetworkEditor.learn_on)
-
-    def _edited(self, change: Callable[[NetworkEditor], None]) -> None:
-        editor, before = self._editor, self._editor.count
-        change(editor)
-        if editor.count != before:
-            self.record_change(EDITED, before, editor.count)
-        self.messages.append(editor.edits)
-        self.show()
-
     def _restore(self, decisions: int) -> None:
         """Restore the networks from the history's checkpoint of a moment; time does not go back."""
         checkpoint = self.history.checkpoint_at(decisions)
         if checkpoint is None:
             raise ValueError("this run has no checkpoints yet")
-        self._editor.forget()
         checkpoint.restore(self.training.agent)
         self.record_change(REVERTED, None, checkpoint.decisions)
-        self.messages.append(self._editor.edits)
         self.show()
 
     commands = Session.commands | {"save": save, "restore": _restore, "teach": _teach, "explain": _explain}
-    commands |= {"edit": _edit, "undo": _undo, "learn_on": _learn_on}

@@ -93,11 +93,6 @@ class Session(ABC, Generic[R]):
     def load_state(self, state: State) -> None:
         """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
 
-    @property
-    def keeps_still(self) -> bool:
-        """Whether the run is not to be kept as it is now."""
-        return False
-
     def last_words(self) -> Iterator[None]:
         """Do what is left when no more steps are taken, in as many turns as it likes."""
         yield
@@ -129,8 +124,7 @@ class Session(ABC, Generic[R]):
             while not (training.done or command == ("finish",)):
                 if command is None:
                     self.tell(step(training))
-                    if not self.keeps_still:
-                        self.messages += self.keeper.go_on(training.clock())
+                    self.messages += self.keeper.go_on(training.clock())
                 command = yield self._answer(command)
             for _ in self.last_words():
                 while command is not None:

@@ -14,7 +14,6 @@ from ai.explain.digit_lesson import DigitLesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
 from ai.training.config import InForce
-from ai.training.edits import NetworkEdits
 from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
 from ai.training.lander_session import TAUGHT
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
@@ -33,12 +32,12 @@ AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
-    DigitLesson: "lesson", Confusion: "confusion", NetworkEdits: "edits",
+    DigitLesson: "lesson", Confusion: "confusion",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
-_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits", "in_force"
+_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "in_force"
 _BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
 
 
@@ -55,7 +54,7 @@ class TrainingRun:
         runs: number of runs so far.
         pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
         pays: all such files, one of which may have paid a run that goes on.
-        swarm_state, network_state, in_force, lesson, confusion, edits: the latest message of each kind.
+        swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind.
         swarms, networks, filters: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
@@ -93,7 +92,6 @@ class TrainingRun:
         self.confusion: Confusion | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.filters: list[FilterMoment] = []
-        self.edits = NetworkEdits()
         self.steps, self.stopping = 0, False  # 0 before it has reported them, or without end
         self.test: float | None = None  # accuracy on the test images, of digits that were measured
         self.kept_epoch: int | None = None  # of the tested network, if that is not the last one

@@ -17,7 +17,6 @@ from ai.environment import Doubles
 from ai.training.captions import Caption, caption
 from ai.training.config import Config
 from ai.training.curves import RecentCurves
-from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
 from game.core import texts
@@ -323,8 +322,6 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _change_words(change: SettingChange) -> str:
-    if change.name == EDITED:
-        return texts.EDIT_TICK.format(count=change.after) if change.after else texts.EDIT_TICK_BACK
     if change.name == TAUGHT:
         return texts.TRAIN_TAUGHT_TICK.format(count=change.after)
     if change.name == REVERTED:

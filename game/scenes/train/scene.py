@@ -7,7 +7,6 @@ from collections.abc import Hashable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 import pygame
@@ -19,7 +18,6 @@ from ai.training.experiments import Experiment, differences
 from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
-from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
@@ -44,8 +42,6 @@ from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.rows import RunRow
 from game.ui.virtual_pointer import VirtualPointer
-
-_BEHIND: Final = 0.72  # cover of the swarm behind an edited network
 
 
 class TrainScene(TrainingScene):
@@ -73,7 +69,7 @@ class TrainScene(TrainingScene):
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
         self.rewind = Rewind(run)
         self.landers = Landers(run, self.rewind)
-        self.inside = Inside(run, self.rewind, partial(self.opened, INSIDE))
+        self.inside = Inside(run, partial(self.opened, INSIDE))
         self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
         self._frame = 0
@@ -85,8 +81,8 @@ class TrainScene(TrainingScene):
     def _key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
-        now, editing = self.rewind.moment is None, self.inside.editing.key
-        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened, editing
+        now = self.rewind.moment is None
+        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened
 
     @property
     def _status(self) -> TrainingStatus:
@@ -118,7 +114,7 @@ class TrainScene(TrainingScene):
     def _pointers(self) -> list[Pointer]:
         nowhere, charts = (0, 0, 1, 1), self.charts
         if self.inside.opened:
-            view = VirtualPointer(nowhere, self.inside.follow, hold=texts.EDIT_PICK)
+            view = VirtualPointer(nowhere, self.inside.follow)
             return [(view, lambda: self.inside.view.box)]
         landers = VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK)
         scrubber = Scrubber(charts, self._scrub, self._duel, charts.zoom_by)
@@ -142,7 +138,6 @@ class TrainScene(TrainingScene):
             column.button(texts.LESSON_WHY, self._ask_why)
             self.switch(column, INSIDE)
             return
-        self.inside.editing.describe(column, opened=False)
         if self.laboratory.page:
             self.laboratory.describe(column)
             return
@@ -383,10 +378,7 @@ class TrainScene(TrainingScene):
         display, box = self._layout.display, self._layout.swarm
         split = self.run.twin is not None
         if self.inside.opened:
-            edited = self.run.edits.holds and self.rewind.moment is None  # then the swarm is seen behind the network
-            if edited:
-                self.landers.now.draw(canvas, alpha, paused=self.run.state is WorkerState.PAUSED)
-            canvas.fill(canvas.rect(*display), NIGHT0, _BEHIND if edited else 1.0)
+            canvas.fill(canvas.rect(*display), NIGHT0)
             self.inside.draw(canvas)
             return
         top = display.top if split else box.bottom  # one swarm fills its box
