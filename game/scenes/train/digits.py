@@ -122,7 +122,7 @@ class DigitTrainingScene(TrainingScene):
         nowhere, charts = (0, 0, 1, 1), self.charts
         pointers: list[Pointer] = [(VirtualPointer(nowhere, charts.follow), lambda: charts.box)]
         if self.view:
-            scrubber = Scrubber(charts, self.film.choose, lambda: None, charts.zoom_by)
+            scrubber = Scrubber(charts, self.film.choose, lambda: None)
             pointers.append((scrubber, lambda: charts.box))
         elif self._shows_misread:
             if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone

@@ -19,13 +19,13 @@ from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import LINE, NIGHT0, SMALL
+from game.drawing.tokens import LINE, NIGHT0
 from game.explain.lesson_door import LessonDoor
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
-from game.scenes.train.charts import BY_DECISIONS, SCORE, Beside, ChartCaptions, TrainingCharts
+from game.scenes.train.charts import SCORE, Beside, ChartCaptions, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.laboratory import Laboratory
@@ -117,7 +117,7 @@ class TrainScene(TrainingScene):
             view = VirtualPointer(nowhere, self.inside.follow)
             return [(view, lambda: self.inside.view.box)]
         landers = VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK)
-        scrubber = Scrubber(charts, self._scrub, self._duel, charts.zoom_by)
+        scrubber = Scrubber(charts, self._scrub, self._duel)
         return [
             (landers, lambda: self.landers.box),
             (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
@@ -164,7 +164,7 @@ class TrainScene(TrainingScene):
         column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace)
 
     def _describe_beside(self, column: Column) -> None:
-        """Add the names of the runs that are shown beside this one, and by what they are measured."""
+        """Add the names of the runs that are shown beside this one."""
         shown = self._beside
         if not shown.runs:
             return
@@ -174,7 +174,6 @@ class TrainScene(TrainingScene):
             column.widget(RunRow(name, style, press))
         if not self.run.twin:
             column.aside(texts.COMPARE_REMOVE)
-        column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)
 
     @property
     def _beside(self) -> Beside:
@@ -343,7 +342,6 @@ class TrainScene(TrainingScene):
         self._clear()
         self.knobs.set_config(config, seed)
         self.laboratory.follow()
-        self.charts.measure_by(BY_DECISIONS)
         self.laboratory.open()
 
     def _leave_split(self, experiment: bool) -> None:

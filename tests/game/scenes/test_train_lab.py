@@ -296,7 +296,7 @@ def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     assert texts.LAB_AS_GUESSED in came_words("never", "never")
 
 
-def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_painted_chart(
+def test_two_lines_in_every_chart_and_both_shares_are_those_of_the_painted_chart(
     train: Driver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     split(train)
@@ -308,9 +308,6 @@ def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_
         shares = [each for each in written if each.endswith(texts.SPLIT_LANDED.format(percent=""))]
         assert shares == [texts.SPLIT_LANDED.format(percent=share) for share in train.top.charts.landed]
     assert {len(chart.runs) for chart in train.top.charts.charts} == {2}
-    train.press_on(texts.LAB_KNOBS)
-    train.frames(1)
-    assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
