@@ -119,7 +119,7 @@ class RecentCurves:
         """Whether a setting is still as this change has made it."""
         try:
             return bool(attrgetter(change.name)(self.config) == change.after)
-        except AttributeError:  # demonstrations, a way back, or what a file says
+        except AttributeError:  # a way back, or what a file says
             return False
 
     def damaged_at(self) -> int | None:

@@ -5,7 +5,7 @@ Only `read` raises for a bad disk or a damaged file; otherwise `problem` says wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, replace
 from datetime import datetime
@@ -16,9 +16,7 @@ from typing import Any, Final
 from ai.files import append_line, brief, free_path
 from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.settings import TOP_RUNG, Settings
-from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
@@ -29,7 +27,6 @@ RECENT: Final = 100  # latest flights, whose files are kept whatever their outco
 BEST: Final = 5  # best landings of each mission, whose files are kept too, as are those of the longest descent
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
 SLACK: Final = 25  # surplus files before they are cleared
-MOST_THROWN: Final = 50  # deleted files that can be restored
 
 
 def describe(flight: Flight, when: float, **more: Any) -> Entry:
@@ -65,7 +62,6 @@ class Records:
     def __init__(self, user_dir: Path) -> None:
         self.folder = user_dir / FOLDER
         self.logbook = user_dir / LOGBOOK
-        self._trash = Trash(self.folder, MOST_THROWN)
         self.problem = ""
 
     def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
@@ -101,32 +97,6 @@ class Records:
     def read(self, name: str) -> Record:
         """Read a flight. Raises ValueError, which names the file and the problem."""
         return flight_file.read(self.folder / name)
-
-    def thrown(self) -> set[str]:
-        """Return the names of the deleted files that can be restored."""
-        return set(self._trash.names)
-
-    def throw_away(self, name: str) -> bool:
-        """Delete a flight's file so that it can be restored; the logbook keeps its line. False if that failed."""
-        return self._attempt(lambda: self._trash.add(self.folder / name, name))
-
-    def bring_back(self, name: str) -> bool:
-        """Restore a deleted file. False if that failed."""
-        return self._attempt(lambda: self._trash.restore(name))
-
-    def _attempt(self, change: Callable[[], object]) -> bool:
-        self.problem = ""
-        try:
-            change()
-        except LibraryError as error:
-            self.problem = str(error)
-        return not self.problem
-
-    def why_gone(self, entry: Entry) -> str:
-        """Return a sentence why a flight can't be replayed; empty if its file exists."""
-        if entry.file in self.kept():
-            return ""
-        return texts.FLIGHT_THROWN if entry.file in self.thrown() else texts.FLIGHT_GONE
 
     def _write(self, record: Record) -> Entry:
         """Write a flight's file under an unused name; return its line."""

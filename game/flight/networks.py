@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Protocol, runtime_checkable
@@ -17,7 +16,6 @@ from ai.lander.sensing import SURROUNDINGS
 from game.core import texts
 from game.core.collection import looks_like_item
 from game.core.kept import Kept
-from game.flight.study_runs import best_runs
 
 DECISION_STEPS: Final = 4  # physics steps per decision of a policy that does not say
 DEFAULT: Final = "modern"
@@ -122,7 +120,7 @@ def titled(name: str) -> str:
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     """Return every folder that looks like a lander's network, by name.
 
-    The player's own come after those of the game, and the best of each study last.
+    The player's own come after those of the game.
 
     A player's network with the name of a shipped one gets a distinct name, and is not left out. The one that lands
     anywhere is, as it reads more than nine numbers: `chosen` has it where it is of use.
@@ -139,8 +137,6 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
         for path in sorted(inside, key=lambda path: path.name != DEFAULT):
             taken = path.name in found or path.name == SCRIPTED
             found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = path
-    for name, path in best_runs(user_dir).items():
-        found.setdefault(name, path)
     return found
 
 
@@ -192,14 +188,11 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = F
 
 
 class Policies:
-    """All flyers by name, the scripted pilot last. A network is read on first use; `read` has those read so far.
+    """All flyers by name, the scripted pilot last. A network is read on first use; `read` has those read so far."""
 
-    `guests` are folders of further networks, by name.
-    """
-
-    def __init__(self, models_dir: Path, user_dir: Path, guests: Mapping[str, Path] | None = None) -> None:
+    def __init__(self, models_dir: Path, user_dir: Path) -> None:
         self._models_dir = models_dir
-        self._folders = folders(models_dir, user_dir) | dict(guests or {})
+        self._folders = folders(models_dir, user_dir)
         missing = [] if DEFAULT in self._folders else [DEFAULT]
         self.names = [*missing, *self._folders, SCRIPTED]
         self.read: dict[str, Network] = {}

@@ -25,7 +25,7 @@ ROUTES: Final = {
     "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
     "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.list.LearnScene",
     "chapter": "learn.scene.ChapterScene", "lesson": "lesson.scene.LessonScene",
-    "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
+    "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip
 
 

@@ -74,7 +74,7 @@ def rewound(driver: Driver) -> None:
     trained(driver)
     run, rewind = driver.top.run, driver.top.rewind
     for _ in range(5):
-        put_beside(run.earlier, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)), run.history.copy())
+        put_beside(run.earlier, texts.TRAIN_NAME.format(preset=len(run.earlier)), run.history.copy())
     driver.frames(20)
     rewind.go_to(run.history["decisions"][-1] / 2)
     driver.frames(5)
@@ -226,11 +226,11 @@ OTHERS: dict[str, Make] = {
 # Screens in states that take long to reach, or say much: beside those of the tour.
 STATES = [
     Stop("daily", "a crash", crashed),
-    Stop("friend", "a claim", lambda driver: driver.skip(240)),
+    Stop("friend", "what it earns", lambda driver: driver.skip(240)),
     Stop("Play", "assists", crashed, {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}),
     Stop("Play", "a share of thrust", half_way),
     Stop("MenuScene", "one switch", lambda driver: driver.skip(30), {"one_switch": True}),
-    Stop("flights", "bringing it back", reset),
+    Stop("flights", "progress put away", reset),
     Stop("the tutorial", settings={"tutored": False}),
     Stop("error"),
     Stop("MenuScene", "a message", noted),

@@ -46,14 +46,12 @@ from game.scenes.play.tutorial import Tutorial
 from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.train.networks import NetworksScene
 from game.scenes.train.scene import TrainScene
-from game.scenes.train.study import StudyScene
 from game.scenes.watch.pilots import PilotsScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play
 from tests.support.lessons import lesson_of
-from tests.support.studies import shown_study
 
 Make = Callable[[Context], Scene]
 
@@ -62,16 +60,6 @@ def friend(context: Context) -> ReplayScene:
     """The page of a friend's flight."""
     flight = sharing.shared(flown(context))
     return ReplayScene(context, sharing.record_of(flight, time.time()), flight)
-
-
-def study(context: Context) -> StudyScene:
-    """A study of the lander, and a second one that cannot be read."""
-    folder = context.user_dir / "studies" / "mine"
-    if not folder.exists():
-        shown_study(folder)
-        (folder.parent / "b").mkdir()
-        (folder.parent / "b" / "study.json").write_text("{}")
-    return StudyScene(context, folder)
 
 
 SCREENS: dict[str, Make] = {
@@ -92,7 +80,6 @@ SCREENS: dict[str, Make] = {
     "ChapterScene": ChapterScene,
     "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
-    "StudyScene": study,
     "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,

@@ -16,7 +16,6 @@ from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.core.collection import exports_dir
 from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Transition, push
 from game.drawing import typeface
@@ -25,7 +24,7 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.export.film import Export
+from game.export.film import Export, films_dir
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
@@ -33,7 +32,6 @@ from game.flight.foresight import SixFutures
 from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay, flown_elsewhere
 from game.input.controls import Command
-from game.scenes.logbook.claim import BELOW_CLAIM, Claimed
 from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
@@ -50,7 +48,6 @@ from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _EARTH: Final = (208.0, 306.0)  # points; clear of the words
-_EARTH_BELOW_CLAIM: Final = (208.0, 336.0)
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
@@ -65,7 +62,7 @@ class ReplayScene(FormScene):
     """Replay of a recorded flight.
 
     Attributes:
-        claimed: a friend's claim, checked by flying it again; None for a flight of the player's own.
+        friend: what a friend has sent; None for a flight of the player's own.
         export: the film that is being made of it; None while there is none.
 
     """
@@ -85,9 +82,8 @@ class ReplayScene(FormScene):
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
         self.form.anchor = (0, -1)
-        self.claimed = Claimed(friend, self.flight_replay) if friend else None
-        self._clear = BELOW_CLAIM if friend else _CLEAR
-        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
+        self.friend = friend
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
         self._readouts: dict[str, readouts.Readout] = {}
@@ -139,7 +135,7 @@ class ReplayScene(FormScene):
         self.explained.update()
         if self.export:
             self._follow_export(self.export)
-        if not self.claimed and self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
+        if not self.friend and self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
             self.context.note(texts.REPLAY_OTHER_RULES)
         for _ in range(self.playback.steps()):
@@ -234,7 +230,7 @@ class ReplayScene(FormScene):
         self.playback.describe(speeds, size).compact(_LABELS, ButtonRow.pad)
         words: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over),
-            (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
+            (texts.FRIEND_ANSWER if self.friend else texts.LOGBOOK_RACE, self._race),
             (texts.CODE_COPY, self._copy),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
@@ -262,11 +258,11 @@ class ReplayScene(FormScene):
     @property
     def _rival(self) -> str:
         """Name of a friend's ghost; empty for one of the player's own."""
-        return texts.FRIEND_NAME if self.claimed else ""
+        return texts.FRIEND_NAME if self.friend else ""
 
     def _copy(self) -> None:
         """Copy the flight as a code; a friend's as it came, with its own claim."""
-        code = code_of(self.claimed.flight) if self.claimed else sharing.code(self.record)
+        code = code_of(self.friend) if self.friend else sharing.code(self.record)
         give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
@@ -274,7 +270,7 @@ class ReplayScene(FormScene):
             self._stop_export()
             return
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
-        path = free_path(exports_dir(), name or texts.REPLAY_TITLE, ".gif")
+        path = free_path(films_dir(), name or texts.REPLAY_TITLE, ".gif")
         self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _stop_export(self) -> None:
@@ -309,16 +305,18 @@ class ReplayScene(FormScene):
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         between = self.playback.between(alpha)
         view = self._scenery.view(canvas.scale, between).filling(canvas)
-        self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
-        _draw_way(canvas, view, self.flight_replay, self._clear.head)
+        self._scenery.draw_land(canvas, between, _EARTH)
+        _draw_way(canvas, view, self.flight_replay, _CLEAR.head)
         if self._futures:
-            draw_futures(canvas, view, self._futures, self._clear.head)
+            draw_futures(canvas, view, self._futures, _CLEAR.head)
         self._scenery.draw_craft(canvas, between)
         readouts.draw_flight(canvas, self._readouts)
 
     def _draw_title(self, canvas: Canvas) -> None:
-        if self.claimed:
-            self.claimed.draw(canvas)
+        if self.friend:
+            where, real = sharing.where(self.friend), self.flight_replay.earned
+            line = texts.FRIEND_LINE.format(where=where, earned=sharing.words(real)) if real else where
+            readouts.draw_corner(canvas, texts.FRIEND_TITLE, line)
             return
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
@@ -336,7 +334,7 @@ class ReplayScene(FormScene):
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
         by_hand = flight.flown_by is StickHolder.HUMAN
         other = networks.sentence(texts.NETWORK_FLEW, networks.flew(self.record.entry.network))
-        by = texts.FRIEND_FLEW[by_hand] if self.claimed else texts.YOU_FLEW if by_hand else other
+        by = texts.FRIEND_FLEW[by_hand] if self.friend else texts.YOU_FLEW if by_hand else other
         if self.ended:
             by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)

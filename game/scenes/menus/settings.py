@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from game.audio.instruments import GROUPS, altitude_key
 from game.core import catalogue, texts
-from game.core.names import LibraryError
+from game.core.names import reason
 from game.core.scene import Push, Transition, push
 from game.core.settings import PACES
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, FIGURE, INK, NIGHT1, SMALL, TEXT_SIZES
-from game.flight.progress import Progress
+from game.flight.progress import put_away
 from game.input.controls import Command, Held
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
@@ -50,7 +49,6 @@ class SettingsScene(PanelScene):
     def __init__(self, context: Context, group: str = "picture") -> None:
         super().__init__(context)
         self.group = group
-        self._progress = Progress(context.user_dir, context.settings)
         self.build()
 
     def enter(self) -> None:
@@ -132,8 +130,6 @@ class SettingsScene(PanelScene):
         flown = texts.TUTORIAL_FLOWN if settings.first_flown else ""
         right.button(texts.TUTORIAL_OPEN, partial(push, "tutorial"), figure=flown, colour=INK)
         right.button(texts.PROGRESS_RESET, self._ask_to_reset, colour=INK)
-        if self._progress.restorable:
-            right.button(texts.PROGRESS_RESTORE, self._restore, colour=INK)
 
     def _toggles(self, column: Column, *names: str) -> None:
         """Add switches, the words on which may name a key."""
@@ -157,28 +153,18 @@ class SettingsScene(PanelScene):
     # Progress
 
     def _ask_to_reset(self) -> Transition:
-        kinds = texts.PROGRESS_FLIGHTS, texts.PROGRESS_MEDALS, texts.PROGRESS_CHAPTERS
-        lost = [text.format(count=count) for text, count in zip(kinds, self._progress.figures, strict=True)]
-        more = " ".join([*lost, texts.PROGRESS_STAYS])
         answers = [(texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset)]
-        return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, more, answers))
+        return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, texts.PROGRESS_STAYS, answers))
 
     def _reset(self) -> None:
-        self._attempt(self._progress.reset, texts.PROGRESS_GONE)
-
-    def _restore(self) -> None:
-        self._attempt(self._progress.restore, texts.PROGRESS_BACK)
-        self.build()
-
-    def _attempt(self, change: Callable[[], None], done: str) -> None:
-        """Reset or restore progress, save the settings, and say what came of it."""
+        """Put all progress away, save the settings, and say where it is, or why it stays."""
         try:
-            change()
-        except LibraryError as error:
-            self.context.note(str(error))
-        else:
-            self.context.apply_settings()
-            self.context.note(done)
+            box = put_away(self.context.user_dir, self.context.settings)
+        except OSError as error:
+            self.context.note(texts.PROGRESS_FAILED.format(reason=reason(error)))
+            return
+        self.context.apply_settings()
+        self.context.note(texts.PROGRESS_GONE.format(folder=box))
 
 
 def _draw_scene(canvas: Canvas, box: pygame.FRect) -> None:

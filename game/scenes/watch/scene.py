@@ -45,9 +45,6 @@ _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand c
 class WatchScene(FormScene):
     """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line.
 
-    A `guest`, a name and a folder, is a network that is none of the player's: it flies at first, and is not remembered,
-    as is the player's own pilot.
-
     Attributes:
         network: the pilot that flies, one of `policies`.
         world: what flies, and what is drawn of it.
@@ -56,9 +53,7 @@ class WatchScene(FormScene):
 
     """
 
-    def __init__(
-        self, context: Context, seed: int | None = None, guest: tuple[str, Path] | None = None, *, many: bool = False
-    ) -> None:
+    def __init__(self, context: Context, seed: int | None = None, *, many: bool = False) -> None:
         super().__init__(context)
         self.form.anchor = (-1, 1)
         self._many = many
@@ -70,12 +65,10 @@ class WatchScene(FormScene):
         self._stood = False  # whether all stood still in the last update
         self._version = 0  # of the player's own file that flies
         self._settings = context.settings
-        self._guests = dict([guest]) if guest else {}
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
         self.policies = self._known()
         names = self.policies.names
-        first = guest[0] if guest else context.settings.model
-        wanted = names.index(first) if first in names else 0
+        wanted = names.index(context.settings.model) if context.settings.model in names else 0
         self._rows: list[Widget] = []
         self._describe(wanted)
         self.hand = self.form.add(Hand(self.world, _TOUCHED, context.view))
@@ -83,7 +76,7 @@ class WatchScene(FormScene):
         if self.problem:
             self.network = self.policies.first_fit()
             self._begin()
-        if context.pilot and context.pilot.chosen and not guest:
+        if context.pilot and context.pilot.chosen:
             self._wanted = context.pilot.path.name
             self._look_again()
 
@@ -241,7 +234,7 @@ class WatchScene(FormScene):
 
     def _known(self) -> networks.Policies:
         """Return all that can fly: the player's own file too, once it was chosen by name."""
-        policies = networks.Policies(self.context.models_dir, self.context.user_dir, self._guests)
+        policies = networks.Policies(self.context.models_dir, self.context.user_dir)
         if pilot := self.context.pilot:
             policies.add(networks.Network(pilot.path.name, pilot))
         return policies
@@ -306,8 +299,8 @@ class WatchScene(FormScene):
     def _look_again(self) -> None:
         """Apply the choice made in a list, and reload networks added, removed or renamed meanwhile."""
         policies = self._known()
-        kept = self.network.name in self._guests or isinstance(self.network.policy, OwnPilot)
-        wanted, self._wanted = self._wanted or (self.network.name if kept else self._settings.model), ""
+        own_flies = isinstance(self.network.policy, OwnPilot)
+        wanted, self._wanted = self._wanted or (self.network.name if own_flies else self._settings.model), ""
         known = policies.names == self.policies.names and wanted == self.network.name
         if known and policies[wanted].policy is self.network.policy:
             return
@@ -331,7 +324,7 @@ class WatchScene(FormScene):
         own_flies = isinstance(network.policy, OwnPilot)
         if self.context.pilot:
             self.context.pilot.chosen = own_flies
-        if network.name not in self._guests and not own_flies:
+        if not own_flies:
             self._settings.model = network.name
         self._begin()
 

@@ -18,7 +18,6 @@ from game.input.analogue import pushed
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.ui.context import Context
-from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import NOON, fly_out, kept, scripted
 from tests.support.written import words_written
@@ -219,28 +218,18 @@ def test_flights_are_listed_newest_first_and_filtered(book: Driver):
     assert [entry.alone for entry in page(book).items] == [True]
 
 
-def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(book: Driver, monkeypatch):
+def test_a_flight_whose_file_is_gone_keeps_its_line_and_says_why(book: Driver, monkeypatch):
     entry = page(book).chosen
-    book.key(pygame.K_DELETE)
-    assert len(page(book).items) == 2
-    labels = [word.label for word in book.form.widgets]
-    assert texts.LOGBOOK_BRING_BACK in labels
-    assert texts.LOGBOOK_WATCH not in labels
-    assert book.said == texts.LOGBOOK_THROWN
-    assert book.the(ListRow).rows[0][2] == texts.LOGBOOK_ROW_THROWN
-    book.key(pygame.K_z)
-    assert book.the(ListRow).rows[0][2] == texts.OUTCOMES["CRASHED"][0]
-    book.key(pygame.K_DELETE)
-    book.key(pygame.K_RETURN)  # there is nothing to watch any more
-    assert book.top_name == "LogbookScene"
+    assert entry
+    (page(book)._records.folder / entry.file).unlink()
+    page(book).enter()
     written = words_written(monkeypatch)
     book.frames(1)
-    assert texts.FLIGHT_THROWN in written
-    book.press_on(texts.LOGBOOK_BRING_BACK)
-    assert book.said == texts.LOGBOOK_BROUGHT_BACK
-    assert page(book).chosen == entry
+    assert len(page(book).items) == 2
+    assert texts.FLIGHT_GONE in written
+    assert texts.LOGBOOK_WATCH not in [word.label for word in book.form.widgets]
     book.key(pygame.K_RETURN)
-    assert book.top_name == "ReplayScene"
+    assert book.top_name == "LogbookScene"
 
 
 def test_a_damaged_flight_is_named_and_left_alone(book: Driver):

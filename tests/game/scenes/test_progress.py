@@ -1,7 +1,8 @@
-"""Sound for all and for none; and progress that is put away after a question, and brought back."""
+"""Sound for all and for none; and progress that is put away after a question."""
 
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import pygame
 import pytest
@@ -9,11 +10,10 @@ import pytest
 from ai.lander.spawns import LADDER
 from game.audio.mixer import Sound
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.settings import Settings
 from game.flight.days import Attempt, Days
 from game.flight.logbook import Records
-from game.flight.progress import Progress
+from game.flight.progress import put_away
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.scene import PlayScene
@@ -31,86 +31,58 @@ def fly(context: Context, flights: int = 2) -> None:
         kept(context, landed(), time.time(), alone=True)
 
 
-def files(context: Context) -> dict[str, bytes]:
-    paths = [path for path in context.user_dir.rglob("*") if path.is_file()]
-    return {
-        str(path.relative_to(context.user_dir)): path.read_bytes()
-        for path in paths
-        if ".trash" not in path.parts and not path.name.startswith((".", "settings"))
-    }
+def files(folder: Path) -> dict[str, bytes]:
+    """The files of progress in a folder."""
+    found = [folder / "logbook.jsonl", folder / "days.jsonl", *(folder / "flights").glob("*")]
+    return {str(path.relative_to(folder)): path.read_bytes() for path in found if path.exists()}
 
 
-def test_progress_is_put_away_after_a_question_and_brought_back(open_game: Open, context: Context):
-    save_settings(context, learnt={"neuron": 3}, chapter="plane", wider_pads=True)
+def test_progress_is_put_away_after_a_question_and_it_is_said_where(open_game: Open, context: Context):
+    save_settings(context, learnt={"neuron": 3}, chapter="plane", rung=4, wider_pads=True)
     fly(context)
-    before = files(context)
+    Days(context.user_dir).note(Attempt("2026-11-20", score=70))
+    before = files(context.user_dir)
     player = Player(open_game(SettingsScene, "flights"), "pad")
+    free = FreeFlight(context.settings)  # a flight that is paused meanwhile
     player.choose(texts.PROGRESS_RESET)
     assert player.top_name == "QuestionDialog"
-    assert texts.PROGRESS_FLIGHTS.format(count=2) in player.top.more
     player.choose(texts.PROGRESS_NO)
-    assert files(context) == before
+    assert files(context.user_dir) == before
     player.choose(texts.PROGRESS_RESET)
     player.choose(texts.PROGRESS_YES)
+    (box,) = context.user_dir.glob("progress *")
+    assert str(box) in player.said
     player.frames(3)
-    assert files(context) == {}
+    assert (files(context.user_dir), files(box)) == ({}, before)
     assert Records(context.user_dir).entries() == []
     saved = player.saved()
-    assert (saved["learnt"], saved["chapter"], saved["tutored"], saved["wider_pads"]) == ({}, "", False, True)
-    player.choose(texts.PROGRESS_RESTORE)
-    player.frames(3)
-    assert files(context) == before
-    assert player.saved()["learnt"] == {"neuron": 3}
-    assert texts.PROGRESS_RESTORE not in [widget.label for widget in player.form.widgets]
-
-
-def test_what_is_flown_since_stays_after_what_comes_back(context: Context):
-    context.settings.learnt = {"neuron": 3}
-    fly(context, 2)
-    first = Records(context.user_dir).entries()
-    progress = Progress(context.user_dir, context.settings)
-    progress.reset()
-    fly(context, 1)
-    context.settings.chapter = "backwards"
-    later = Records(context.user_dir).entries()
-    assert progress.restorable
-    progress.restore()
-    assert Records(context.user_dir).entries() == first + later
-    assert {entry.file for entry in first + later} == Records(context.user_dir).kept()
-    assert (context.settings.learnt, context.settings.chapter) == ({"neuron": 3}, "backwards")
-    assert not progress.restorable
-
-
-def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
-    context.settings.rung = 4
-    free = FreeFlight(context.settings)  # a flight that is paused meanwhile
-    Days(context.user_dir).note(Attempt("2026-11-20", score=70))
-    progress = Progress(context.user_dir, context.settings)
-    progress.reset()
-    assert (context.settings.rung, dict(Days(context.user_dir).attempts)) == (-1, {})
+    assert (saved["learnt"], saved["chapter"], saved["rung"], saved["wider_pads"]) == ({}, "", -1, True)
     assert free.chosen()[2] == LADDER.spawn(0)
-    Days(context.user_dir).note(Attempt("2026-11-22", score=90))
-    progress.restore()
-    assert context.settings.rung == 4
-    assert {day: each.score for day, each in Days(context.user_dir).attempts.items()} == {
-        "2026-11-20": 70,
-        "2026-11-22": 90,
-    }
+    fly(context, 1)
+    assert len(Records(context.user_dir).entries()) == 1
+    second = put_away(context.user_dir, context.settings)
+    assert (files(box), len(files(second))) == (before, 2)
 
 
-def test_a_disk_that_refuses_keeps_everything_where_it_is(context: Context, monkeypatch: pytest.MonkeyPatch):
+@pytest.mark.parametrize("fails", ["logbook.jsonl", "flights"])
+def test_a_disk_that_refuses_keeps_everything_where_it_is(
+    context: Context, fails: str, monkeypatch: pytest.MonkeyPatch
+):
     context.settings.learnt = {"neuron": 3}
     fly(context)
-    before = files(context)
+    before, rename = files(context.user_dir), Path.rename
 
-    def full(*_: object, **__: object) -> None:
-        raise OSError(28, "No space left on device")
+    def refuse(path: Path, target: Path) -> Path:
+        if path.name == fails and target.parent.name.startswith("progress"):
+            raise OSError(28, "No space left on device")
+        return rename(path, target)
 
-    monkeypatch.setattr("game.flight.progress.write_text", full)
-    with pytest.raises(LibraryError, match="No space left"):
-        Progress(context.user_dir, context.settings).reset()
-    assert files(context) == before
+    monkeypatch.setattr(Path, "rename", refuse)
+    with pytest.raises(OSError, match="No space left"):
+        put_away(context.user_dir, context.settings)
+    assert files(context.user_dir) == before
     assert context.settings.learnt == {"neuron": 3}
+    assert [*context.user_dir.glob("progress *")] == []
 
 
 def test_one_volume_turns_all_others_down_and_mute_turns_all_off():
