@@ -7,7 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-from ai.digits.filters import FilterMoment
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson
@@ -34,7 +33,7 @@ _LATEST: Final = {
     DigitLesson: "lesson", Confusion: "confusion",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
-_KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
+_KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
 _TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "in_force"
 _BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
@@ -54,7 +53,7 @@ class TrainingRun:
         pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
         pays: all such files, one of which may have paid a run that goes on.
         swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind.
-        swarms, networks, filters: those of the whole run, as far as they were kept.
+        swarms, networks: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
         keeps: whether a run is kept while it has no name.
@@ -91,7 +90,6 @@ class TrainingRun:
         self.lesson: Any = None
         self.confusion: Confusion | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
-        self.filters: list[FilterMoment] = []
         self.steps, self.stopping = 0, False  # 0 before it has reported them, or without end
         self.test: float | None = None  # accuracy on the test images, of digits that were measured
         self.kept_epoch: int | None = None  # of the tested network, if that is not the last one
