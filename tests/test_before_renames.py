@@ -95,10 +95,10 @@ def test_a_digit_run_without_a_state_says_so_and_its_settings_and_network_are_re
     images, labels = rng.random((40, 28, 28), dtype=np.float32), rng.integers(0, 10, 40)
     with pytest.raises(ModelFormatError, match="its state is gone"):
         resume(DigitTraining, DATA / "digit_run", data=(images, labels))
-    config, _, step = read_settings(DATA / "digit_run")
+    config, described = read_settings(DATA / "digit_run")
     came_since = {"drawn": 0.0}  # and changes nothing of a run of then
     assert_same_settings(config, expected["config"] | came_since, RENAMED_DIGITS)
-    assert step == expected["step"]
+    assert described.step == expected["step"]
     assert_same_values(DigitClassifier.load(DATA / "digit_run").predict(images[:3]), expected["values"])
 
 

@@ -1,4 +1,4 @@
-"""Collection of named folders, such as a player's networks: rename, delete, restore, import and export them."""
+"""Collection of named folders, such as a player's networks: list, rename, delete, copy one in, rescue one run."""
 
 from __future__ import annotations
 
@@ -12,9 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
-import platformdirs
-
-from ai.files import atomic_folder, brief, free_path, move_state, recover_all, recover_folder, remove_state, take_folder
+from ai.files import atomic_folder, brief, move_state, recover_all, recover_folder, remove_state, take_folder
 from game.core import texts
 from game.core.names import (
     LONGEST_NAME,
@@ -26,21 +24,13 @@ from game.core.names import (
     name_problem,
     reason,
 )
-from game.core.trash import Trash
 
 Item = TypeVar("Item")
 
 UNSAVED: Final = ".training"  # folder of a run that has no name yet
-_MOST_DELETED: Final = 8  # items that can be restored
-_GAMES: Final = 16  # games that may train at the same time
 _DEEPEST: Final = 8  # depth of folders within a network's folder, its fixes included
 MOST_FILES: Final = 5_000  # of a folder that is copied
 MOST_BYTES: Final = 500_000_000
-
-
-def exports_dir() -> Path:
-    """Return the folder for exports, within the player's documents."""
-    return Path(platformdirs.user_documents_dir()) / texts.GAME
 
 
 @dataclass(frozen=True)
@@ -67,7 +57,7 @@ class Collection(Generic[Item]):
         kind: what an item is.
 
     Attributes:
-        unsaved: folder of the item that has no name yet; a second game's has a number appended.
+        unsaved: folder of the item that has no name yet.
         problem: why `items` could not read the folder; empty if it could.
 
     """
@@ -75,7 +65,6 @@ class Collection(Generic[Item]):
     def __init__(self, folder: Path, kind: ItemKind[Item]) -> None:
         self.folder, self.kind = folder, kind
         self.unsaved, self.problem = folder / UNSAVED, ""
-        self._trash = Trash(folder, _MOST_DELETED)
         self._lock = ExitStack()
 
     def items(self) -> list[Item]:
@@ -128,18 +117,6 @@ class Collection(Generic[Item]):
         move_state(source, target)
         return target
 
-    def export(self, name: str, folder: Path | None = None) -> Path:
-        """Copy an item into a folder, by default `exports_dir`; return the path of the copy.
-
-        Nothing is overwritten: a copy whose name is taken gets a number.
-        """
-        source = self.existing(name)
-        folder = folder or exports_dir()
-        with library_errors(texts.LIBRARY_NOT_EXPORTED, name):
-            target = free_path(folder, name)
-            _copy(source, target)
-        return target
-
     def import_folder(self, path: Path) -> Path:
         """Copy an item into the collection, numbered if its name is taken; return the path of the copy.
 
@@ -153,40 +130,25 @@ class Collection(Generic[Item]):
             _copy(source, target)
         return target
 
-    # Deleted items
-
     def delete(self, name: str) -> None:
-        """Delete an item; `undo_delete` restores it, without the state of a run that could go on."""
-        source = self.existing(name)
-        self._trash.add(source, name)
-        remove_state(source)
+        """Delete an item for good, with the state of a run that could go on."""
+        self._erase(self.existing(name), name)
 
-    @property
-    def last_deleted(self) -> str:
-        """Name of the item that `undo_delete` would restore; empty if there is none."""
-        return (self._trash.names or [""])[-1]
+    def _erase(self, folder: Path, name: str) -> None:
+        with library_errors(texts.NOT_DELETED, name):
+            folder.unlink() if folder.is_symlink() else shutil.rmtree(folder)
+        remove_state(folder)
 
-    def undo_delete(self) -> Path | None:
-        """Restore the item deleted last, under another name if its own is taken; None if there is none."""
-        name = self.last_deleted
-        if not name:
-            return None
-        taken = not is_valid_name(name) or holder(self.folder, name)
-        return self._trash.restore_last(self.free_name(name) if taken else name)
+    # The item without a name, which a game that ended too early may have left
 
-    # Items without a name, and those left behind by a game that ended too early
-
-    def hold(self) -> None:
-        """Lock an `unsaved` folder against other games until `release`.
-
-        Of the folders that no other game holds, take the first in which an item was left behind, or else the first.
-        """
+    def hold(self) -> bool:
+        """Lock `unsaved` against other games until `release`; False if another holds it."""
         self.release()
-        places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
-        for place in sorted(places, key=lambda place: not self._holds_item(place)):
-            with suppress(BlockingIOError):
-                self._lock, self.unsaved = take_folder(place), place
-                return
+        try:
+            self._lock = take_folder(self.unsaved)
+        except BlockingIOError:
+            return False
+        return True
 
     def release(self) -> None:
         """Unlock `unsaved` for other games."""
@@ -195,18 +157,10 @@ class Collection(Generic[Item]):
     @property
     def left_behind(self) -> bool:
         """Whether an item lies in `unsaved`. Do not ask while it is being written, because this repairs it."""
-        return self._holds_item(self.unsaved)
-
-    def _holds_item(self, folder: Path) -> bool:
-        recover_folder(folder)
+        recover_folder(self.unsaved)
         with suppress(OSError):
-            return any(there(folder / part) for part in self.kind.parts)
+            return any(there(self.unsaved / part) for part in self.kind.parts)
         return False
-
-    def claim(self) -> Item | None:
-        """Lock `unsaved` against other games until `release`; return the item in it, if any."""
-        self.hold()
-        return self.rescued()
 
     def rescued(self) -> Item | None:
         """Return the item without a name under a suggested one, if any. Call before a training begins."""
@@ -221,10 +175,9 @@ class Collection(Generic[Item]):
         return self.kind.read(target, target.name)
 
     def discard_rescued(self) -> None:
-        """Delete the item without a name, if any; `undo_delete` restores it."""
+        """Delete the item without a name, if any."""
         if self.left_behind:
-            self._trash.add(self.unsaved, self.free_name(self.kind.rescued()))
-            remove_state(self.unsaved)
+            self._erase(self.unsaved, self.kind.rescued())
 
 
 def looks_like_item(folder: Path, parts: Iterable[str]) -> bool:

@@ -13,8 +13,10 @@ from pathlib import Path
 from typing import Final, Protocol
 
 import numpy as np
+import platformdirs
 import pygame
 
+from game.core import texts
 from game.core.clock import STEP
 from game.core.settings import Settings
 from game.core.worker import Worker, WorkerState
@@ -29,6 +31,11 @@ EVERY: Final = 3  # steps per frame
 _AFTER: Final = 120  # updates shown after the end, while fire and dust die away
 _LINGER: Final = 60  # steps that the last frame then stays on screen
 _SAMPLE: Final = 40  # steps between the frames sampled for the palette
+
+
+def films_dir() -> Path:
+    """Return the folder for films, within the player's documents."""
+    return Path(platformdirs.user_documents_dir()) / texts.GAME
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from ai.nn import ModelFormatError
 from ai.training.config import InForce
 from ai.training.edits import NetworkEdits
 from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
-from ai.training.lander_session import TAUGHT
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
 from game.core.collection import Collection
@@ -39,7 +38,7 @@ _ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint,
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
 _TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits", "in_force"
-_BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
+_BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
 
 
 class TrainingRun:
@@ -59,13 +58,14 @@ class TrainingRun:
         swarms, networks, filters: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
+        keeps: whether a run is kept while it has no name.
         stopping: whether it was asked to end, and is being measured.
         differing: names of the settings in which the experiment differs.
 
     """
 
     def __init__(self, kind: RunKind, collection: Collection[Any], *, keeps: bool = True) -> None:
-        self.kind, self.collection, self._keeps = kind, collection, keeps
+        self.kind, self.collection, self.keeps = kind, collection, keeps
         self.name, self.runs, self.pace = "", 0, len(PACES) - 1
         self._worker: Worker | None = None
         self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
@@ -125,19 +125,14 @@ class TrainingRun:
     @property
     def kept(self) -> bool:
         """Whether there is a network of a run without a name."""
-        return (self.collection.unsaved / CONFIG).exists()
+        return self.keeps and (self.collection.unsaved / CONFIG).exists()
 
     @property
     def unfinished(self) -> bool:
         """Whether a run without a name was left that can be resumed; false while another runs or is ending."""
         if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
             return False
-        return self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
-
-    @property
-    def taught(self) -> bool:
-        """Whether this run has learnt from demonstrations."""
-        return any(each.name == TAUGHT for each in self.history.setting_changes)
+        return self.keeps and self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
 
     @property
     def turns(self) -> int:
@@ -177,12 +172,12 @@ class TrainingRun:
         return note
 
     def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
-        keep, notes = self.collection.unsaved if self._keeps else None, self._name_ended()
+        keep, notes = self.collection.unsaved if self.keeps else None, self._name_ended()
         try:
             if resume is not None:
                 self.history = History.read(resume, self.kind.session.columns)
             if keep is not None and resume != keep:
-                self.collection.discard_rescued()  # from where it can still be restored
+                self.collection.discard_rescued()
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
         pay: dict[str, Any] = {"pays": self.pays} if resume else {"pay": self.pay}
@@ -275,8 +270,6 @@ class TrainingRun:
             case SettingChange(_, name, _, after):
                 with suppress(ValueError):  # what is no knob, such as a way back
                     self.config = self.config.turned(name, after)
-                if name == TAUGHT:
-                    return texts.TRAIN_TAUGHT.format(count=after)
             case RunStarted(config, seed, _, lost, steps):
                 self.config, self.seed, self.steps, self.begun = config, seed, steps or 0, True
                 self.history.reward_scale = getattr(config, "reward_scale", 1.0)
@@ -387,9 +380,10 @@ class TrainingRun:
     def _take_place(self) -> None:
         """Let the experiment save itself in place of the run that has ended."""
         self._leaving = None
-        with suppress(LibraryError):  # then it replaces what is there
-            self.collection.discard_rescued()
-        self.ask("autosave_to", self.collection.unsaved)
+        if self.keeps:
+            with suppress(LibraryError):  # then it replaces what is there
+                self.collection.discard_rescued()
+            self.ask("autosave_to", self.collection.unsaved)
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""

@@ -38,7 +38,6 @@ import pygame
 from game.core.assets import MODELS_DIR
 from game.core.scene import Pop, Push, Scene
 from game.core.settings import SettingsFile
-from game.core.trash import TRASH
 from game.scenes import scene_of
 from game.scenes.menus.menu import MenuScene
 from game.shell.app import App
@@ -224,8 +223,7 @@ class Monkey:
         found += [f"thread {each.name}" for each in set(threading.enumerate()) - self._threads]
         # A process that was killed in the midst of a save leaves a file, which the next one clears away.
         children = {self._folder / "user" / name for name in ("models", "digits")}
-        hidden = (path for path in (self._folder / "user").rglob(".*") if path.name != TRASH)  # what can be restored
-        files = [path for path in hidden if children.isdisjoint(path.parents)]
+        files = [path for path in (self._folder / "user").rglob(".*") if children.isdisjoint(path.parents)]
         return found + [f"file {path}" for path in (*files, *Path(tempfile.gettempdir()).iterdir())]
 
     # What it can do: each says in a few words what it did

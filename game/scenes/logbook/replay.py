@@ -16,7 +16,6 @@ from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.core.collection import exports_dir
 from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Transition, push
 from game.drawing import typeface
@@ -25,7 +24,7 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.export.film import Export
+from game.export.film import Export, films_dir
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
@@ -271,7 +270,7 @@ class ReplayScene(FormScene):
             self._stop_export()
             return
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
-        path = free_path(exports_dir(), name or texts.REPLAY_TITLE, ".gif")
+        path = free_path(films_dir(), name or texts.REPLAY_TITLE, ".gif")
         self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _stop_export(self) -> None:

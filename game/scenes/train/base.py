@@ -78,7 +78,10 @@ class TrainingScene(FormScene, ABC):
         self._layout: Layout | None = None
         self.explained = Explained()
         try:
-            self.left = run.collection.claim()
+            run.keeps = run.collection.hold()
+            if not run.keeps:
+                context.note(texts.TRAIN_ELSEWHERE)
+            self.left = run.collection.rescued() if run.keeps else None
             self._build()
             self._lay()
             self.form.focus(self.start_button)
@@ -313,15 +316,18 @@ class TrainingScene(FormScene, ABC):
 
     def _begin(self, config: Any, seed: int) -> None:
         """Start a run; one that has learnt and has no name is put among the player's networks."""
-        self._keep()
-        self._start(config, seed)
+        if self._keep():
+            self._start(config, seed)
 
-    def _keep(self) -> None:
+    def _keep(self) -> bool:
+        """Put a run that has learnt and has no name among the player's networks; False, and a note, if that failed."""
+        if not self._worth_keeping:
+            return True
         runs = self.run.collection
-        if self._worth_keeping:
-            name = runs.free_name(self._suggestion if self.run.alive else runs.kind.rescued())
-            if problem := self._save_as(name):
-                self.context.note(problem)
+        name = runs.free_name(self._suggestion if self.run.runs else runs.kind.rescued())
+        if problem := self._save_as(name):
+            self.context.note(problem)
+        return not problem
 
     def _start(self, config: Any, seed: int, resume: Path | None = None) -> None:
         """Start a run, or go on with the saved one `resume`, whose first message brings its real settings."""
@@ -353,7 +359,7 @@ class TrainingScene(FormScene, ABC):
 
     def _back(self) -> Transition | None:
         """Leave; if the run has learnt anything, say that it is kept."""
-        if self.run.alive and len(self.run.history):
+        if self.run.keeps and self.run.alive and len(self.run.history):
             self.context.note(texts.TRAIN_KEPT)
         return Pop()
 

@@ -16,7 +16,7 @@ from game.core.scene import Pop, Push, Transition, push
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.flight import networks
-from game.scenes.menus.dialogs import NameDialog
+from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -126,10 +126,7 @@ class NetworksScene(PanelScene):
             rows, lambda _: self._press_row(), texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH,
             on_choose=self._choose_row, index=index,
         )  # fmt: skip
-        more: list[tuple[str, OnPress]] = []
-        if deleted := self._library.last_deleted:
-            more.append((texts.RUN_RESTORE.format(name=deleted), self._restore))
-        left.words([*more, (texts.BACK, Pop)])
+        left.button(texts.BACK, Pop)
         self._describe_chosen(self._beside)
 
     def _describe_chosen(self, column: Column) -> None:
@@ -167,8 +164,7 @@ class NetworksScene(PanelScene):
         if run.resumable and not self._choose:
             verbs.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
         if self._is_own:
-            verbs += [(texts.RUN_RENAME, self._rename), (texts.RUN_EXPORT, self._export),
-                      (texts.RUN_DELETE, self._delete)]  # fmt: skip
+            verbs += [(texts.RUN_RENAME, self._rename), (texts.RUN_DELETE, self._delete)]
         return verbs
 
     def _choose_row(self, number: int) -> None:
@@ -220,37 +216,28 @@ class NetworksScene(PanelScene):
             self._make_pilot()
         return ""
 
-    def _export(self) -> None:
+    def _delete(self) -> Transition:
+        """Ask whether the chosen run is to go for good."""
         run = self.chosen
         assert run is not None
-        self.context.note(_result(lambda: texts.RUN_EXPORTED.format(path=self._library.export(run.name))))
+        answers = [(texts.RUN_KEEP, lambda: None), (texts.RUN_DELETE, partial(self._delete_now, run))]
+        return Push(QuestionDialog(self, texts.RUN_DELETE_QUESTION.format(name=run.name), "", answers))
 
-    def _delete(self) -> None:
-        run = self.chosen
-        assert run is not None
-
-        def delete() -> str:
+    def _delete_now(self, run: SavedRun) -> None:
+        try:
             self._library.delete(run.name)
-            return texts.RUN_DELETED.format(name=run.name)
-
-        self.context.note(_result(delete))
+        except LibraryError as error:
+            self.context.note(str(error))
         self._reload()
 
-    def _restore(self) -> None:
-        def restore() -> str:
-            folder = self._library.undo_delete()
-            self._reload(folder)
-            return texts.RUN_RESTORED.format(name=folder.name) if folder else ""
-
-        self.context.note(_result(restore))
-
     def _import(self, path: Path) -> None:
-        def copy() -> str:
+        try:
             folder = self._library.import_folder(path)
-            self._reload(folder)
-            return texts.RUN_IMPORTED.format(name=folder.name)
-
-        self.context.note(_result(copy))
+        except LibraryError as error:
+            self.context.note(str(error))
+            return
+        self._reload(folder)
+        self.context.note(texts.RUN_IMPORTED.format(name=folder.name))
 
 
 def _write_headings(words: Sequence[str], columns: Sequence[float], cursor: Cursor) -> None:
@@ -262,14 +249,6 @@ def _write_headings(words: Sequence[str], columns: Sequence[float], cursor: Curs
         for word, end in zip(words[1:], ends, strict=True):
             canvas.text(word, (end, small.baseline), size=LABEL, colour=MUTE, weight="medium", align="right")
     cursor.gap(LEADING * LABEL)
-
-
-def _result(operation: Callable[[], str]) -> str:
-    """Perform an operation on the library; return what it says of its success, or why it failed."""
-    try:
-        return operation()
-    except LibraryError as error:
-        return str(error)
 
 
 def row(run: SavedRun, own: bool) -> Row:

@@ -2,21 +2,20 @@ import errno
 import json
 import os
 import shutil
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ai.files import state_folder
 from ai.training.config import Config
 from ai.training.loop import Training
-from ai.training.run import resume, save
+from ai.training.run import save
 from game.core import collection, texts
-from game.core.collection import UNSAVED
 from game.core.names import LibraryError, is_valid_name
 from game.flight import networks
-from game.training.library import Library, read_run
+from game.training.library import Library
 
 SMALL = Config(hidden=(8,), num_envs=4, learning_starts=16, replay_size=100, batch_size=16)
 DESCRIBED = {
@@ -71,20 +70,18 @@ def test_a_player_without_a_folder_has_no_runs(library: Library):
     assert library.runs() == []
     assert library.problem == ""
     assert library.rescued() is None
-    assert library.undo_delete() is None
 
 
-def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: Library, tmp_path: Path):
+def test_a_damaged_run_is_listed_with_its_problem_and_can_be_renamed_and_deleted(library: Library):
     nan, wrong = float("nan"), dict[str, list[object]]()
     wrong = {"decisions": ["many", float("inf"), 10**400, -1], "seconds": [None, nan], "seed": [10**400],
              "best": [3, {"success": nan}], "changes": [1]}  # fmt: skip
     values = [{**DESCRIBED, name: value} for name, values in wrong.items() for value in values]
-    for number, text in enumerate(("", "{", "[]", "[" * 100_000, '{"env": "lander"}', *map(json.dumps, values))):
+    for text in ("", "{", "[]", "[" * 100_000, '{"env": "lander"}', *map(json.dumps, values)):
         (add(library, "hurt") / "training.json").write_text(text)
         (run,) = library.runs()
         assert run.problem == "training.json is damaged", text[:80]
         assert run.flyable
-        assert library.export("hurt", tmp_path / f"out {number}").is_dir()
         library.rename("hurt", "still hurt")
         library.delete("still hurt")
         assert library.runs() == []
@@ -214,7 +211,7 @@ def test_nothing_outside_the_library_is_touched(library: Library):
     add(library, "run")
     add(library, ".training")
     for name in ("gone", "..", ".", "../user", ".training", "/"):
-        for attempt in (library.delete, library.export, lambda name: library.rename(name, "taken away")):
+        for attempt in (library.delete, lambda name: library.rename(name, "taken away")):
             with pytest.raises(LibraryError, match="not there"):
                 attempt(name)
     assert names(library) == ["run"]
@@ -232,83 +229,38 @@ def test_a_free_name_is_valid_and_nobodys(library: Library):
     assert library.free_name("y" * 40) == "y" * 38 + " 2"
 
 
-def test_what_was_deleted_comes_back_the_latest_first(library: Library):
-    for name in ("one", "two"):
-        add(library, name)
+def test_what_is_deleted_is_gone_with_its_state_and_a_link_leaves_what_it_leads_to(library: Library, tmp_path: Path):
+    state = state_folder(add(library, "run"))
+    state.mkdir()
+    elsewhere = add(Library(tmp_path / "elsewhere"), "far")
+    (library.folder / "link").symlink_to(elsewhere)
+    for name in ("run", "link"):
         library.delete(name)
-    assert names(library) == []
-    for name in ("two", "one"):
-        assert library.last_deleted == name
-        restored = library.undo_delete()
-        assert restored is not None
-        assert restored.name == name
-    assert library.undo_delete() is None
-    assert library.last_deleted == ""
-    assert names(library) == ["one", "two"]
-
-
-def test_what_was_just_deleted_comes_back_although_the_clock_was_set_back(
-    library: Library, monkeypatch: pytest.MonkeyPatch
-):
-    clock = iter((2 * 10**18, 10**18, 10**9))
-    monkeypatch.setattr(time, "time_ns", lambda: next(clock))
-    for name in ("one", "two", "three"):
-        add(library, name)
-        library.delete(name)
-        assert library.last_deleted == name
-    assert library.undo_delete()
-    assert names(library) == ["three"]
-
-
-def test_an_undo_beside_a_newer_run_of_that_name_keeps_both(library: Library):
-    add(library, "run", seed=1)
-    library.delete("run")
-    add(library, "run", seed=2)
-    library.undo_delete()
-    assert {run.name: run.seed for run in library.runs()} == {"run": 2, "run 2": 1}
-
-
-def test_the_trash_does_not_grow_for_ever(library: Library):
-    for number in range(12):
-        add(library, "run", seed=number)
-        library.delete("run")
-    back = []
-    while restored := library.undo_delete():
-        back.append(read_run(restored).seed)
-    assert back == [11, 10, 9, 8, 7, 6, 5, 4]
-
-
-def test_an_export_is_a_whole_run_and_replaces_nothing(library: Library, trained: Path, tmp_path: Path):
-    shutil.copytree(trained, library.folder / "mine")
-    copies = [library.export("mine", tmp_path / "Documents" / "Tranquility") for _ in range(2)]
-    assert [copy.name for copy in copies] == ["mine", "mine 2"]
-    for copy in copies:
-        assert resume(Training, copy).seed == 5
-    assert sorted(path.name for path in copies[0].parent.iterdir()) == ["mine", "mine 2"]
+    assert [*library.folder.iterdir()] == []
+    assert (elsewhere / "config.json").exists()
 
 
 def test_a_full_disk_is_said_and_leaves_nothing_half_done(
-    library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    library: Library, trained: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    add(library, "run")
-
     def full(source: Path, target: Path, **_: bool) -> None:
         (target / "half").mkdir()
         raise shutil.Error([("a", "b", "[Errno 28] No space left on device")])
 
     monkeypatch.setattr(shutil, "copytree", full)
-    with pytest.raises(LibraryError, match=r"run could not be exported: .*No space left on device"):
-        library.export("run", tmp_path / "out")
-    assert list((tmp_path / "out").iterdir()) == []
+    with pytest.raises(LibraryError, match=r"run could not be copied here: .*No space left on device"):
+        library.import_folder(trained)
+    assert list(library.folder.iterdir()) == []
 
 
 def test_a_disk_that_takes_nothing_is_said(library: Library, monkeypatch: pytest.MonkeyPatch):
     add(library, "run")
 
-    def refuse(self: Path, target: Path) -> None:
+    def refuse(*_: object) -> None:
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "rename", refuse)
+    monkeypatch.setattr(shutil, "rmtree", refuse)
     for attempt in (lambda: library.rename("run", "other"), lambda: library.delete("run")):
         with pytest.raises(LibraryError, match="Permission denied"):
             attempt()
@@ -348,25 +300,13 @@ def test_what_had_no_name_when_the_game_died_can_be_kept(library: Library, train
     assert names(library) == sorted([rescued.name, "taken"])
 
 
-def test_two_games_at_once_keep_their_runs_apart(library: Library):
+def test_only_one_of_two_games_has_the_place_of_a_run_without_a_name(library: Library):
     other = Library(library.folder.parent)
-    assert library.claim() is None
-    assert other.claim() is None
-    assert library.unsaved != other.unsaved
-    add(other, other.unsaved.name, seed=8)
-    assert library.claim() is None, "the other still works there"
+    assert library.hold()
+    assert not other.hold()
+    library.release()
+    assert other.hold()
     other.release()
-    left = library.claim()
-    assert left is not None
-    assert (left.seed, left.folder) == (8, library.unsaved)
-    assert names(library) == []
-
-
-def test_one_game_finds_what_another_that_was_killed_left(library: Library):
-    add(library, f".{UNSAVED} 2.old", seed=6)
-    left = library.claim()
-    assert left is not None
-    assert left.seed == 6
 
 
 @pytest.mark.parametrize("name", ["run", ".training"])

@@ -111,7 +111,7 @@ def test_a_full_disk_is_an_error_and_leaves_what_was_there(record: Record, small
 
 @pytest.fixture
 def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_path: Path) -> tuple[Driver, ReplayScene]:
-    monkeypatch.setattr(module, "exports_dir", lambda: tmp_path / "pictures")
+    monkeypatch.setattr(module, "films_dir", lambda: tmp_path / "pictures")
     driver = open_game(ReplayScene, record)
     driver.frames(2)
     return driver, driver.top

@@ -134,17 +134,6 @@ def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
 # What is kept
 
 
-def test_a_new_run_puts_the_last_one_aside(tmp_path: Path, monkeypatch):
-    inline_worker.install(monkeypatch.setattr)
-    digit_run = TrainingRun(DIGITS, DigitModels(tmp_path))
-    digit_run.collection.unsaved.mkdir()
-    (digit_run.collection.unsaved / "config.json").write_text("old")
-    digit_run.begin(SMALL, 0)
-    digit_run.close()
-    (aside,) = tmp_path.glob(".trash/*/config.json")
-    assert aside.read_text() == "old"
-
-
 def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path, monkeypatch):
     inline_worker.install(monkeypatch.setattr)
     digit_run: Any = TrainingRun(DIGITS, DigitModels(tmp_path))

@@ -178,42 +178,40 @@ def test_a_gamepad_renames_with_a_name_made_of_the_figures(open_runs, three: Lib
     assert sorted(run.name for run in three.runs()) == ["b", "c", "modern 5k 75.0"]
 
 
-def test_the_mouse_deletes_and_brings_back(open_runs, three: Library):
+def test_what_is_deleted_is_asked_for_once_and_gone_for_good(open_runs, three: Library):
     driver = open_runs()
     click_row(driver, 1)
     click(driver, texts.RUN_DELETE)
-    assert shown(driver) == "c"  # what took its place
-    click(driver, texts.RUN_RESTORE.format(name="b"))
+    assert driver.top_name == "QuestionDialog"
+    click(driver, texts.RUN_KEEP)
     assert shown(driver) == "b"
-    assert texts.RUN_RESTORED.format(name="b") == driver.said
-    assert not any("Bring back" in widget.label for widget in scene(driver).form.widgets)
+    click(driver, texts.RUN_DELETE)
+    click(driver, texts.RUN_DELETE)
+    assert shown(driver) == "c"  # what took its place
+    assert not (three.folder / "b").exists()
+    assert sorted(run.name for run in three.runs()) == ["a", "c"]
 
 
 def test_the_games_own_networks_are_not_to_be_changed(open_runs, context: Context, three: Library):
     """Deleting all there is leaves a screen that works, and a sentence that says how to make a run."""
     driver = open_runs()
-    driver.keys(*[pygame.K_DELETE] * 5, pygame.K_F2)
+    for _ in range(3):
+        driver.key(pygame.K_DELETE)
+        click(driver, texts.RUN_DELETE)
+    driver.keys(pygame.K_DELETE, pygame.K_F2)
     assert three.runs() == []
     assert not naming(driver)
     assert (context.models_dir / "lander" / "modern").is_dir()
     assert (shown(driver), scene(driver).line) == ("modern", texts.RUNS_NONE)
 
 
-def test_export_says_where_to(open_runs, three: Library, tmp_path: Path):
-    driver = open_runs()
-    click(driver, texts.RUN_EXPORT)
-    assert (tmp_path / "Documents" / "Tranquility" / "a" / "config.json").is_file()
-    assert "Tranquility" in driver.said
-
-
 def test_what_cannot_be_done_is_said_and_the_screen_stays(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
     driver = open_runs()
     for run in three.runs():
         three.delete(run.name)  # somebody else was faster
-    click(driver, texts.RUN_EXPORT)
-    assert "not there" in driver.said
-    assert shown(driver) == "a"
     click(driver, texts.RUN_DELETE)
+    click(driver, texts.RUN_DELETE)
+    assert "not there" in driver.said
     assert shown(driver) == "modern"
 
 
@@ -221,7 +219,7 @@ def test_a_damaged_run_is_shown_with_its_problem(open_runs, three: Library):
     (three.folder / "a" / "config.json").unlink()
     driver = open_runs()
     assert scene(driver).chosen.problem == "config.json is missing"
-    assert verbs(driver) == [texts.RUN_RENAME, texts.RUN_EXPORT, texts.RUN_DELETE]
+    assert verbs(driver) == [texts.RUN_RENAME, texts.RUN_DELETE]
     chosen: list[str] = []
     driver = open_runs(choose=chosen.append)
     driver.keys(pygame.K_HOME, ENTER)
