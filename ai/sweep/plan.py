@@ -203,7 +203,7 @@ def knob_space(config: Knobs, names: Iterable[str]) -> Space:
     Of a group, knobs that change nothing because another one is off are left out. Raises ValueError for other names.
     """
     space: Space = {}
-    for name in map(config.name_now, names):
+    for name in names:
         group = [item.name for item in fields(config) if item.metadata["group"] == name]
         for each in [each for each in group if each not in config.unused()] or [name]:
             space[each] = knob_dimension(config, each)
@@ -219,4 +219,4 @@ def read_space(config: Knobs, file: Path) -> Space:
     asked = read_json(file)
     if not isinstance(asked, dict) or not asked:
         raise ValueError(f"{file}: a space is a range by the name of each knob")
-    return {(now := config.name_now(name)): knob_dimension(config, now, each) for name, each in asked.items()}
+    return {name: knob_dimension(config, name, each) for name, each in asked.items()}
