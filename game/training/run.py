@@ -22,8 +22,8 @@ from game.core.worker import Worker, WorkerState
 from game.training.record import EarlierRun, Record, put_beside
 from game.training.run_settings import RunKind
 
-# Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
-PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
+# Decisions of each lander per second, slow as in real flight, and as fast as possible.
+PACES: Final[tuple[float | None, ...]] = (15.0, None)
 SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
 NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
@@ -110,7 +110,7 @@ class TrainingRun:
 
     @property
     def alive(self) -> bool:
-        """Whether there is a run that can be paused, stepped, stopped and changed."""
+        """Whether there is a run that can be paused, stopped and changed."""
         return self.state in (WorkerState.STARTING, WorkerState.RUNNING, WorkerState.PAUSED)
 
     @property
@@ -287,17 +287,6 @@ class TrainingRun:
             self.test, self.kept_epoch = saved.test, saved.epoch
         return ""
 
-    def compare(self, name: str, folder: Path) -> str:
-        """Show a saved run's curves beside this one's; return a note for the player, or ""."""
-        try:
-            history = History.read(folder, self.kind.session.columns)
-        except ModelFormatError as error:
-            return str(error)
-        if not len(history):
-            return texts.TRAIN_NO_CURVES.format(name=name)
-        put_beside(self.earlier, name, history)
-        return ""
-
     # Requests
 
     def ask(self, name: str, *arguments: Any) -> None:
@@ -324,11 +313,6 @@ class TrainingRun:
     def resume(self) -> None:
         """Go on with both."""
         self._order(Worker.resume, both=True)
-
-    def step(self) -> None:
-        """Take one learning step of both, then pause."""
-        self._order(Worker.pause, both=True)
-        self._order(Worker.step, both=True)
 
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES` for both, by its index."""

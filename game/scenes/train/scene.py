@@ -17,11 +17,10 @@ from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from ai.training.lander_session import CAREFUL
 from game.core import texts
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import LINE, NIGHT0
+from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
-from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
 from game.scenes.train.charts import SCORE, Beside, ChartCaptions, TrainingCharts
@@ -155,11 +154,12 @@ class TrainScene(TrainingScene):
         column.words([
             (texts.LESSON_WHY, self._ask_why),
             (texts.TRAIN_DUEL, self._duel),
-            (texts.TRAIN_COMPARE, self._compare),
-            (texts.TRAIN_STEP, self.run.step),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
-        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace)
+
+    def _describe_foot(self, column: Column) -> None:
+        super()._describe_foot(column)
+        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one."""
@@ -291,16 +291,6 @@ class TrainScene(TrainingScene):
             return Pop()
 
         return push("runs", train=go_on)
-
-    def _compare(self) -> Transition:
-        """Ask for a saved run whose curves shall be seen beside these."""
-        runs = self.library.runs()
-
-        def put(number: int) -> None:
-            if note := self.run.compare(runs[number].name, runs[number].folder):
-                self.context.note(note)
-
-        return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
 
     def _duel(self) -> Transition | None:
         """Fly against the checkpoint of the moment that is shown."""
