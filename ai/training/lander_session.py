@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from ai.environment import StepResult
 from ai.lander.environment import LanderEnv
-from ai.pilots.own import pay_by
-from ai.training.config import Config, in_force
+from ai.training.config import in_force
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
 from ai.training.messages import DIVERGED, NetworkState, SwarmState
-from ai.training.session import Session, Turns
+from ai.training.session import Session
 from ai.training.tasks import Score
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -45,40 +42,13 @@ class LanderSession(Session[Training]):
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.gradient_steps
-        self.paid_by = ""  # the player's own file, if not the usual pay
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
-
-    @classmethod
-    def live(
-        cls, config: Config, seed: int = 0, *, pay: Path | None = None, pays: Sequence[Path] = (), **options: Any
-    ) -> Turns:
-        """Lead a session, made as by `of`; every turn is one decision of all landers.
-
-        `pay` is a file of the player's own that pays in place of the usual pay; validations keep that. A run that goes
-        on is paid by its own file, if that is among the player's `pays`; else `lost` says that it is not. Raises
-        PilotError for what is wrong with it, and ValueError for settings that are not a lander's.
-        """
-        session = cls.of(config, seed, **options)
-        training = session.training
-        if before := training.around.get("paid_by"):  # of a run that goes on
-            pay = next((each for each in pays if str(each) == before), None)
-            if pay is None:
-                unpaid = f"{Path(str(before)).name} paid it, and is not there: it goes on with the usual pay"
-                training.lost = "; ".join(filter(None, (training.lost, unpaid)))
-        with ExitStack() as ends:
-            if pay:
-                session.paid_by = str(pay)
-                ends.callback(pay_by(session.env, pay))
-            yield from session.lead()
 
     @property
     def _checkpoint_every(self) -> int:
         """Decisions between checkpoints: sparser as the run gets longer, so that the first hours keep them all."""
         return max(40 * self.env.num_envs, 2_500, self.training.agent.decisions // 50)
-
-    def around(self) -> dict[str, Any]:
-        return {"paid_by": self.paid_by}
 
     def show(self) -> None:
         agent, training = self.training.agent, self.training

@@ -45,7 +45,7 @@ class Session(ABC, Generic[R]):
     def __init__(self, training: R, keep: Path | None, source: Path | None) -> None:
         self.training, self.keep = training, keep
         self.history = History.read(source, self.columns) if source else History(self.columns)
-        self.keeper = Keeper(training, keep, self.history, self.around)
+        self.keeper = Keeper(training, keep, self.history)
         self.messages: list[Any] = []
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
@@ -79,10 +79,6 @@ class Session(ABC, Generic[R]):
     @abstractmethod
     def tell(self, progress: Any) -> None:
         """Tell of a step that was taken."""
-
-    def around(self) -> dict[str, Any]:
-        """Return what the session goes on from, besides the run: `Run.around` of one that goes on."""
-        return {}
 
     def last_words(self) -> Iterator[None]:
         """Do what is left when no more steps are taken, in as many turns as it likes."""

@@ -50,8 +50,6 @@ class TrainingRun:
 
     Attributes:
         runs: number of runs so far.
-        pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
-        pays: all such files, one of which may have paid a run that goes on.
         swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind.
         swarms, networks: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
@@ -68,8 +66,6 @@ class TrainingRun:
         self._worker: Worker | None = None
         self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
-        self.pay: Path | None = None
-        self.pays: tuple[Path, ...] = ()
         self.config: Any = kind.of()
         self.seed, self.begun = 0, False
         self.earlier: list[EarlierRun] = []
@@ -176,9 +172,7 @@ class TrainingRun:
                 self.collection.discard_rescued()
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        pay: dict[str, Any] = {"pays": self.pays} if resume else {"pay": self.pay}
-        pay = {name: each for name, each in pay.items() if each}  # runs of digits are never paid
-        self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
+        self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
         return " ".join(notes)
@@ -326,7 +320,7 @@ class TrainingRun:
         note = self.begin(config, seed, name=name)
         # It writes nothing to the disk: its twin has the place of the run without a name.
         self.twin, self.differing = TrainingRun(self.kind, self.collection, keeps=False), differing
-        self.twin.pace, self.twin.pay = self.pace, self.pay
+        self.twin.pace = self.pace
         self.twin.begin(experiment, seed)
         self._keep_in_step()
         return note

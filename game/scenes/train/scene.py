@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pygame
 
-from ai.pilots.child import PAY
-from ai.pilots.shelf import Shelf
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from ai.training.lander_session import CAREFUL
@@ -147,8 +144,6 @@ class TrainScene(TrainingScene):
             self.switch(column, name)
         column.button(texts.TRAIN_EXPERIMENTS, self.laboratory.open).pad = 3.0
         column.button(texts.TRAIN_RUNS, self._open_runs).pad = 3.0
-        pay = self.run.pay.name if self.run.pay else ""
-        column.button(texts.PILOTS_WORDS["pay"][0], self._open_pays, figure=pay).pad = 3.0
         column.gap(8)
         column.line()
         column.words([
@@ -245,11 +240,6 @@ class TrainScene(TrainingScene):
 
     # The run
 
-    def _start(self, config: Config, seed: int, resume: Path | None = None) -> None:
-        with suppress(OSError):
-            self.run.pays = tuple(Shelf(self.context.user_dir, PAY).files().values())
-        super()._start(config, seed, resume)
-
     def _clear(self) -> None:
         for part in (self.landers, self.rewind, self._advice, self.charts, self.captions, self.inside):
             part.clear()
@@ -277,13 +267,6 @@ class TrainScene(TrainingScene):
         """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
         chosen = self.landers.shown.chosen
         self.lessons.ask(CAREFUL if chosen is None else chosen, self.rewind.moment)
-
-    def _open_pays(self) -> Transition:
-        def choose(path: Path | None) -> None:
-            self.run.pay, self._laid = path, None
-            self.context.note(texts.PILOTS_PAYS)
-
-        return push("pilots", choose, PAY, self.run.pay)
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

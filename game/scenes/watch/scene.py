@@ -285,10 +285,9 @@ class WatchScene(FormScene):
         return push("runs", choose=self._take)
 
     def _open_pilots(self) -> Transition:
-        def choose(path: Path | None) -> None:
-            if path:
-                own.take(self.context, path)
-                self._take(path.name)
+        def choose(path: Path) -> None:
+            own.take(self.context, path)
+            self._take(path.name)
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 
