@@ -123,7 +123,7 @@ class RecentCurves:
             return bool(change.after) and edits[-1] is change
         try:
             return bool(attrgetter(change.name)(self.config) == change.after)
-        except AttributeError:  # demonstrations, a way back, or what a file says
+        except AttributeError:  # a way back, or what a file says
             return False
 
     def damaged_at(self) -> int | None:

@@ -1,4 +1,4 @@
-"""Session of landers: what is seen of them, checkpoints to go back to, lessons, demonstrations, edits by hand."""
+"""Session of landers: what is seen of them, checkpoints to go back to, lessons, edits by hand."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from ai.files import count_of
 from ai.lander.environment import LanderEnv
 from ai.pilots.own import pay_by
 from ai.training.config import Config, in_force
-from ai.training.demonstrations import read, teach
 from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
@@ -26,7 +25,6 @@ from ai.training.tasks import Score
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 NETWORK_SECONDS: Final = 0.25
-TAUGHT: Final = "demonstrations"  # the name of the change that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
 
@@ -50,7 +48,6 @@ class LanderSession(Session[Training]):
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.gradient_steps
-        self._learned_from: set[str] = set()  # digests of demonstrations
         self.paid_by = ""  # the player's own file, if not the usual pay
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
@@ -90,12 +87,11 @@ class LanderSession(Session[Training]):
 
     def state(self) -> State:
         due = {"point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning}
-        return due | {"learned_from": sorted(self._learned_from), "paid_by": self.paid_by}
+        return due | {"paid_by": self.paid_by}
 
     def load_state(self, state: State) -> None:
         self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
         self._began_learning = count_of(state["began_learning"])
-        self._learned_from = set(state["learned_from"])
 
     def show(self) -> None:
         agent, training = self.training.agent, self.training
@@ -180,17 +176,6 @@ class LanderSession(Session[Training]):
         self._tell_validation(self.training.validate())
         super().save(folder)
 
-    def _teach(self, file: Path) -> None:
-        """Learn from the demonstrations in a file as well, as far as this run has not done so yet."""
-        new = [each for each in read(file) if each.digest not in self._learned_from]
-        used = teach(self.training.agent, new)
-        self._learned_from.update(each.digest for each in new)
-        if not used:
-            raise ValueError("there are no landings that this run has not learnt from already")
-        if not self.training.config.success_pass:
-            self.change("success_pass", True)
-        self.record_change(TAUGHT, None, used)
-
     def _explain(self, slot: int, decisions: int | None = None) -> None:
         """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
         self.messages.append(self._explanations.explain(slot, decisions))
@@ -226,5 +211,5 @@ class LanderSession(Session[Training]):
         self.messages.append(self._editor.edits)
         self.show()
 
-    commands = Session.commands | {"save": save, "restore": _restore, "teach": _teach, "explain": _explain}
+    commands = Session.commands | {"save": save, "restore": _restore, "explain": _explain}
     commands |= {"edit": _edit, "undo": _undo, "learn_on": _learn_on}

@@ -45,9 +45,7 @@ class Settings:
     assist: Share = 0.0  # assist level of the co-pilot
     copilot: str = "tolerance"  # mode of the co-pilot, a Mode of ai.copilot.copilot
     three_pads: bool = False  # three pads among hills, instead of one on a plain
-    hands: str = "own"  # handicap of the hands, a name of game.flight.handicap.HANDS
     more_flights: bool = False  # whether all choices of flights are shown, and not four
-    teach: bool = False  # whether good landings are kept for a network to learn from
     show_thinking: bool = False  # whether what the network thinks is shown in flight
     gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight

@@ -13,7 +13,6 @@ from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.settings import Settings
 from game.flight.flight import Flight, StickHolder
-from game.flight.handicap import OWN
 from game.flight.networks import sentence, who
 
 GUARDIAN: Final = "guardian"  # the mode of help that goes by futures
@@ -33,7 +32,6 @@ class Rules(Protocol):
     kept: bool
     bar: str
     alone: bool
-    hands: str
 
     def medal(self, flight: Flight) -> int:
         """Return the medal of a flight that is over: 3 for gold, 2, 1, and 0 for none."""
@@ -163,8 +161,6 @@ class Credit:
         flight = self._flight
         if self._rules.bar:
             return self._rules.bar
-        if self._rules.hands != OWN:
-            return "hands"
         if self.helped and flight.share < 1.0:
             return "helped"
         if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
@@ -180,7 +176,7 @@ class Credit:
 
     @property
     def counts(self) -> bool:
-        """Whether the person flew all of it, without handicap, changed gravity or assists that set it apart.
+        """Whether the person flew all of it, without changed gravity or assists that set it apart.
 
         Help that stood by and changed nothing takes nothing away.
         """

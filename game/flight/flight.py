@@ -14,7 +14,6 @@ from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
 from ai.lander.route import Route
-from game.flight.handicap import OWN, Handicap
 from game.flight.networks import DECISION_STEPS, Policy, QPolicy, decide, decision_steps
 from game.flight.poses import Poses
 
@@ -37,11 +36,10 @@ class Flight:
     """Flight of one lander, by a person, by a network, by both in turns, or by both together.
 
     Args:
-        seed: random seed of the start, the ground and the handicap.
+        seed: random seed of the start and the ground.
         network: the network that can take or share the stick.
         spawn: kind of start.
         pads: 1 on a plain, or 3 among hills.
-        hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
         shares: whether the network may share the stick, and not only take it.
         easing: changes of the rules that give the pilot more room.
@@ -67,7 +65,6 @@ class Flight:
         spawn: str = "random",
         *,
         pads: int = 1,
-        hands: str = OWN,
         mission: str = "",
         shares: bool = True,
         easing: Easing = AS_IT_IS,
@@ -84,7 +81,6 @@ class Flight:
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None
         self.alone: Decision | None = None
-        self._hands = Handicap(hands, seed, DECISION_STEPS)
         self._held_for = self._yours = 0
         self.guard: Guard | None = None
         self.copilot: CoPilot | None = None
@@ -220,8 +216,7 @@ class Flight:
         if by is StickHolder.HUMAN:
             if self.steered:
                 held, shares = held - held % 3 + int(_STEERING.act(self.observation)[0]) % 3, None
-            self.asked = self._hands.ask(held, self.observation)
-            shares = shares if self.asked == held else None
+            self.asked = held
         if self.guard and self.guard.acts:
             return self.guard.choose(by, shares)
         if by is StickHolder.NETWORK:

@@ -1,6 +1,6 @@
 """Progress of the player: what they have flown, won and read, which can be put away into a folder of its own.
 
-Networks, demonstrations, drawings and settings of taste are no progress, and stay.
+Networks, drawings and settings of taste are no progress, and stay.
 """
 
 from __future__ import annotations

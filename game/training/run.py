@@ -16,7 +16,6 @@ from ai.nn import ModelFormatError
 from ai.training.config import InForce
 from ai.training.edits import NetworkEdits
 from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
-from ai.training.lander_session import TAUGHT
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
 from game.core.collection import Collection
@@ -39,7 +38,7 @@ _ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint,
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
 _TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits", "in_force"
-_BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
+_BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
 
 
 class TrainingRun:
@@ -134,11 +133,6 @@ class TrainingRun:
         if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
             return False
         return self.keeps and self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
-
-    @property
-    def taught(self) -> bool:
-        """Whether this run has learnt from demonstrations."""
-        return any(each.name == TAUGHT for each in self.history.setting_changes)
 
     @property
     def turns(self) -> int:
@@ -276,8 +270,6 @@ class TrainingRun:
             case SettingChange(_, name, _, after):
                 with suppress(ValueError):  # what is no knob, such as a way back
                     self.config = self.config.turned(name, after)
-                if name == TAUGHT:
-                    return texts.TRAIN_TAUGHT.format(count=after)
             case RunStarted(config, seed, _, lost, steps):
                 self.config, self.seed, self.steps, self.begun = config, seed, steps or 0, True
                 self.history.reward_scale = getattr(config, "reward_scale", 1.0)

@@ -76,7 +76,7 @@ def rewound(driver: Driver) -> None:
     trained(driver)
     run, rewind = driver.top.run, driver.top.rewind
     for _ in range(5):
-        put_beside(run.earlier, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)), run.history.copy())
+        put_beside(run.earlier, texts.TRAIN_NAME.format(preset=len(run.earlier)), run.history.copy())
     driver.frames(20)
     rewind.go_to(run.history["decisions"][-1] / 2)
     driver.frames(5)

@@ -16,9 +16,7 @@ from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
-from ai.training import demonstrations
 from ai.training.config import PRESETS
-from ai.training.demonstrations import Demonstration
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training
 from ai.training.run import resume, save
@@ -113,19 +111,6 @@ def _read_digits(folder: Path) -> Any:
     return int(training.seconds)
 
 
-def _demonstrations(folder: Path, version: int) -> None:
-    flights = [Demonstration(version, (0, 3, 3, 1, 2), begins=1), Demonstration(9, (0, 1), ground=4, pad=1)]
-    demonstrations.write(folder / "demonstrations.json", flights)
-
-
-def _read_demonstrations(folder: Path) -> Any:
-    found = demonstrations.read(folder / "demonstrations.json")
-    for each in found:
-        if len(each.actions) < 10:
-            demonstrations.relive(each, PRESETS["modern"])
-    return found[0].seed if found else None
-
-
 def _settings(folder: Path, version: int) -> None:
     SettingsFile(folder).save(Settings(model=str(version), keys={"up": ["w"]}, unknown={"new": [1, {"a": 2}]}))
 
@@ -156,7 +141,6 @@ SUBJECTS = (
     Subject("network", _network, _read_network, (ModelFormatError,)),
     Subject("run", _run, _read_run, (ModelFormatError,)),
     Subject("digits", _digits, _read_digits, (ModelFormatError,)),
-    Subject("demonstrations", _demonstrations, _read_demonstrations, (OSError, ValueError)),
     Subject("settings", _settings, _read_settings),
     Subject("flight", _flight, _read_flight, (ValueError,)),
 )

@@ -44,11 +44,10 @@ class Challenge:
         title, line: its name, for the corner.
         goal: its goal, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
-        free: whether it is a free flight, for which gravity, pads and hands can be chosen.
+        free: whether it is a free flight, for which gravity and pads can be chosen.
         fixed: whether there is only one start.
         kept: whether its flights are recorded in the logbook.
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
-        hands: handicap of the player's hands, a name of `game.flight.handicap.HANDS`.
         alone: whether the network may neither help nor take over.
         eases: whether the player's easing applies to its flights.
         easing: the easing of its next flight.
@@ -70,7 +69,6 @@ class Challenge:
     name = title = line = goal = opening = eased_line = bar = copy_hint = next_hint = again_hint = new_hint = ""
     free = alone = eases = guides = elsewhere = shadows = through = False
     fixed = kept = compares = True
-    hands = "own"
     easing = AS_IT_IS
     total = 0
     ahead: Ground | None = None

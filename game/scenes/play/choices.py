@@ -1,4 +1,4 @@
-"""Your flights: help, pads, start and hands of the next flights; all else stands under More."""
+"""Your flights: help, pads and start of the next flights; all else stands under More."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG, Settings
 from game.drawing.tokens import INK
 from game.flight.credit import GUARDIAN, HELP, OTHER
-from game.flight.handicap import HANDS
 from game.input.controls import Command
 from game.scenes.play.help import MODES, choose, means, word_of
 from game.ui.actions import Action, Table
@@ -77,15 +76,10 @@ class ChoicesScene(PanelScene):
         self.build()
 
     def _describe_starts(self, column: Column) -> None:
-        settings, hands = self.context.settings, list(HANDS)
-        pads = texts.CHOICES_PADS_WORDS
+        settings, pads = self.context.settings, texts.CHOICES_PADS_WORDS
         column.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), lambda at: self._set("three_pads", bool(at)))
         rung, rungs, aside = max(0.0, settings.rung), (0.0, float(TOP_RUNG)), texts.CHOICES_LADDER_HELP
         column.slider(texts.CHOICES_LADDER, rung, rungs, self._set_rung, step=1.0, figure=_rung, aside=aside)
-        words = [texts.CHOICES_HANDS_WORDS[name] for name in hands]
-        now = hands.index(settings.hands) if settings.hands in hands else 0
-        column.choice(texts.CHOICES_HANDS, words, now, lambda at: self._set("hands", hands[at]))
-        column.aside(lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))
 
     def _describe_more(self, left: Column, right: Column) -> None:
         helped = self._helped
@@ -100,8 +94,6 @@ class ChoicesScene(PanelScene):
         self._share(right, "pace", texts.PACE, PACES, texts.CHOICES_PACE_HELP)
         key = self.context.controls.word(Command.MODE)
         self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))
-        if self._free:
-            self._toggle(right, "teach", *texts.CHOICES_TEACH)
 
     def _set_rung(self, rung: float) -> None:
         self._set("rung", round(rung))

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 
 from ai.environment import Doubles
 from ai.flights.verification import landing_score
-from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import TimeScale
@@ -18,11 +17,9 @@ from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.flight.credit import Credit, eased
-from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight, StickHolder, start_of
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
-from game.flight.handicap import OWN
 from game.flight.logbook import Records
 from game.flight.networks import Network
 from game.flight.outcomes import OutcomeCard, outcome_card
@@ -284,14 +281,10 @@ class FlownFlight:
         return tuple(rows)
 
     def write_down(self, records: Records) -> Entry | None:
-        """Record the finished flight, and return its line; None if that was done before; report what failed.
-
-        It is saved as a demonstration too, if wished.
-        """
+        """Record the finished flight, and return its line; None if that was done before; report what failed."""
         if self.record:
             return None
         credit, challenge = self.credit, self.challenge
-        message = self._teach() if challenge.free and credit.bar != "practice" else ""
         entry = records.keep(
             self.flight,
             time.time(),
@@ -306,18 +299,9 @@ class FlownFlight:
         )
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
-        if message := message or challenge.written(entry) or records.problem:
+        if message := challenge.written(entry) or records.problem:
             self.context.note(message)
         return entry
-
-    def _teach(self) -> str:
-        """Save a landing as a demonstration, if wished and good enough; return a message for the player."""
-        if self.flight.outcome is not Outcome.LANDED or not self._settings.teach or self.challenge.hands != OWN:
-            return ""
-        try:
-            return texts.TAUGHT if add_demonstration(self.flight, self.context.user_dir) else ""
-        except (OSError, ValueError) as error:
-            return texts.NOT_TAUGHT.format(reason=error)
 
     # The picture
 

@@ -17,7 +17,6 @@ from game.core.settings import TOP_RUNG, Settings
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
-from game.flight.handicap import HANDS, OWN
 from game.flight.logbook import ladder_rung
 from game.flight.networks import Network, Policy, titled
 from game.flight.outcomes import OutcomeCard
@@ -46,15 +45,15 @@ class FreeFlight(Challenge):
         """Give players of before a place on the ladder, by their landings."""
         ladder_rung(self._settings, entries)
 
-    def chosen(self) -> tuple[int, str, str]:
-        """Return the number of pads, the handicap, and the kind of start."""
-        hands, three = self._settings.hands, self._settings.three_pads
-        rung = max(0, self._settings.rung)  # progress can be put away during a flight
-        return 3 if three else 1, hands if hands in HANDS else OWN, "random" if three else LADDER.spawn(rung)
+    def chosen(self) -> tuple[int, str]:
+        """Return the number of pads, and the kind of start."""
+        if self._settings.three_pads:
+            return 3, "random"
+        return 1, LADDER.spawn(max(0, self._settings.rung))  # progress can be put away during a flight
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        pads, self.hands, usual = self.chosen()
-        return Flight(seed, network, spawn or usual, pads=pads, hands=self.hands, easing=self.easing)
+        pads, usual = self.chosen()
+        return Flight(seed, network, spawn or usual, pads=pads, easing=self.easing)
 
     def dial(self, settings: Settings) -> Settings:
         return settings
@@ -63,8 +62,6 @@ class FreeFlight(Challenge):
         """Return the rung or the number of pads, and who can take over."""
         helper = texts.WITH_NETWORK.format(network=titled(network.name)) if whole else ""  # else, a key says so
         flown = helper if flight.network else texts.ALONE
-        if self.hands != OWN:
-            flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[self.hands])
         if (rung := rung_of(flight)) is not None:
             return texts.LADDER_TITLE.format(number=rung + 1, count=COUNT), flown
         return texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown

@@ -19,7 +19,6 @@ from ai.training.config import Config
 from ai.training.curves import RecentCurves
 from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
-from ai.training.lander_session import TAUGHT
 from game.core import texts
 from game.drawing import prose
 from game.drawing.canvas import Canvas
@@ -325,8 +324,6 @@ def _listed(words: Sequence[str]) -> str:
 def _change_words(change: SettingChange) -> str:
     if change.name == EDITED:
         return texts.EDIT_TICK.format(count=change.after) if change.after else texts.EDIT_TICK_BACK
-    if change.name == TAUGHT:
-        return texts.TRAIN_TAUGHT_TICK.format(count=change.after)
     if change.name == REVERTED:
         return texts.TRAIN_REVERTED
     part = "." in change.name

@@ -23,7 +23,6 @@ from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
-from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
@@ -162,7 +161,6 @@ class TrainScene(TrainingScene):
             (texts.LESSON_WHY, self._ask_why),
             (texts.TRAIN_DUEL, self._duel),
             (texts.TRAIN_COMPARE, self._compare),
-            (texts.TRAIN_TEACH, self._teach),
             (texts.TRAIN_STEP, self.run.step),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
@@ -270,8 +268,7 @@ class TrainScene(TrainingScene):
 
     @property
     def _suggestion(self) -> str:
-        name = texts.TRAIN_TAUGHT_NAME if self.run.taught else texts.TRAIN_NAME
-        return name.format(preset=self.knobs.name)
+        return texts.TRAIN_NAME.format(preset=self.knobs.name)
 
     def _choose_lander(self, event: pygame.event.Event) -> None:
         """Choose the lander that is clicked, in points; a second click asks for its lesson."""
@@ -286,16 +283,6 @@ class TrainScene(TrainingScene):
         """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
         chosen = self.landers.shown.chosen
         self.lessons.ask(CAREFUL if chosen is None else chosen, self.rewind.moment)
-
-    def _teach(self) -> None:
-        """Add the player's landings to the run's training as demonstrations, or start a run with them."""
-        folder = self.context.user_dir
-        if not count_demonstrations(folder):
-            self.context.note(texts.TRAIN_NO_LESSONS)
-            return
-        if not self.run.alive:
-            self._begin(self.knobs.config, self.knobs.seed)
-        self.run.ask("teach", folder / FILE_NAME)
 
     def _open_pays(self) -> Transition:
         def choose(path: Path | None) -> None:

@@ -49,7 +49,6 @@ from ai.nn import (
 )
 from ai.nn.layer import MOST_LAYERS
 from ai.training.config import PRESETS, gym_config
-from ai.training.demonstrations import Demonstration
 from ai.training.loop import Training
 from ai.training.run import resume, save
 from ai.training.tasks import LanderTask
@@ -193,8 +192,6 @@ def test_numbers_of_a_file_are_what_they_should_be():
         with pytest.raises(ValueError, match=r"not finite|should hold float32 \[2\]"):
             array_like(like, np.array(given, np.float32), finite=finite)
     assert array_like(like, np.array([np.inf, 0], np.float32), finite=False)[0] == np.inf
-    with pytest.raises(ValueError, match=r"ground: 'x' is no whole number"):
-        Demonstration(0, (0,), ground="x")
 
 
 def fully(inputs, outputs):

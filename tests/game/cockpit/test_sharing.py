@@ -11,7 +11,6 @@ from game.core.settings import Settings, SettingsFile
 from game.flight import networks
 from game.flight.credit import HELP, Credit
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
-from game.flight.handicap import HANDS, OWN, Handicap
 from game.flight.logbook import Records
 from game.scenes.play.challenge import Challenge
 from game.scenes.play.help import word_of
@@ -125,11 +124,11 @@ def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_eng
     assert len(flight.recording.actions) == len(flight.recording.hands) == 101
 
 
-@pytest.mark.parametrize(("hands", "pads"), [*zip(HANDS, (1, 3, 1, 3), strict=True)])
-def test_the_same_seed_and_keys_are_the_same_flight_and_the_recording_flies_it_again(hands: str, pads: int):
+@pytest.mark.parametrize("pads", [1, 3])
+def test_the_same_seed_and_keys_are_the_same_flight_and_the_recording_flies_it_again(pads: int):
     flights = []
     for _ in range(2):
-        flight = shared(Falls(), 0.6, pads=pads, hands=hands)
+        flight = shared(Falls(), 0.6, pads=pads)
         for step, held in enumerate(keys(3, 500)):
             if step in (100, 180):
                 flight.hand_over()
@@ -143,20 +142,6 @@ def test_the_same_seed_and_keys_are_the_same_flight_and_the_recording_flies_it_a
         again.step(action)
     assert np.array_equal(again.poses.now, first.poses.now)
     assert again.outcome is first.outcome
-
-
-def test_other_hands_bring_keys_late_wrong_or_in_part_and_ones_own_bring_them_as_they_are():
-    seen = np.zeros((1, 9), np.float32)
-    held = keys(5, 2000)
-    got = {name: [Handicap.ask(hands, key, seen) for key in held] for name in HANDS for hands in [Handicap(name, 7, 4)]}
-    assert got[OWN] == held
-    assert max(got["sensor"]) < MAIN
-    for name in ("laggy", "noisy"):
-        assert 0.2 < np.mean(np.array(got[name]) != held) < 0.95
-    late = Handicap("laggy", 7, 4)
-    assert [late.ask(COAST, seen) for _ in range(8)] == [COAST] * 8
-    assert MAIN in [late.ask(MAIN, seen) for _ in range(200)]  # late, but it comes
-    assert COAST in [late.ask(COAST, seen) for _ in range(200)]  # and no engine burns on for good
 
 
 def test_a_landing_on_any_of_three_pads_counts_and_read_outs_turn_to_it():
@@ -280,25 +265,23 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
 def test_choices_are_made_and_the_waiting_flight_follows(open_game: Open, context: Context):
     driver = fly(open_game, context)
     driver.key(pygame.K_c)
-    for label in (texts.CHOICES_HELP, texts.CHOICES_PADS, texts.CHOICES_HANDS):
+    for label in (texts.CHOICES_HELP, texts.CHOICES_PADS):
         driver.frames(2)
         driver.click(driver.widget(label)._places[1].center)
     driver.key(pygame.K_ESCAPE)
     settings = driver.app.context.settings
     assert word_of(settings) == "guard"
     assert settings.three_pads
-    assert settings.hands == "laggy"
     assert play(driver).waiting
     assert len(play(driver).flight.env.ground.pads) == 3
-    assert play(driver).challenge.hands == "laggy"
 
 
 def test_words_that_nobody_knows_in_the_settings_fly_as_usual(open_game: Open, context: Context):
-    save_settings(context, hands="three", copilot="captain", text_size="enormous", assist=0.5)
+    save_settings(context, copilot="captain", text_size="enormous", assist=0.5)
     driver = opened(open_game, "Play")
     driver.key(pygame.K_UP)
     driver.frames(10)
-    assert (play(driver).challenge.hands, play(driver).flight.copilot.mode) == (OWN, Mode.TOLERANCE)
+    assert play(driver).flight.copilot.mode is Mode.TOLERANCE
     assert driver.app.canvas.zoom == 1.0
     driver.key(pygame.K_c)
     assert driver.top_name == "ChoicesScene"

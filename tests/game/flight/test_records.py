@@ -4,7 +4,6 @@ from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,11 +14,8 @@ from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
-from ai.training.config import Config
-from ai.training.demonstrations import read, relive
 from game.core import texts
 from game.flight import logbook as records
-from game.flight.demonstrations import FILE_NAME, add_demonstration, count_demonstrations
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
 from game.flight.logbook import Records, best, longest_descent
@@ -254,39 +250,3 @@ def test_any_recording_survives_its_file(steps: list, seed: int, wider: bool, un
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record
     assert json.loads(to_text(record))["version"] == 5
-
-
-# Landings to learn from
-
-
-def flown_by_hand(seed: int, pads: int = 1, network_until: int = 0) -> Flight:
-    """A flight in which a good pilot presses the keys, after a network has had the stick for a while."""
-    flight, pilot = Flight(seed, ScriptedPilot(), pads=pads), ScriptedPilot()
-    if network_until:
-        flight.hand_over()
-    while not flight.over:
-        if len(flight.recording.actions) == network_until and flight.hand is StickHolder.NETWORK:
-            flight.hand_over()
-        flight.step(int(pilot.act(flight.env.observe())[0]))
-    return flight
-
-
-@pytest.mark.parametrize(("pads", "network_until"), [(3, 0), (1, 120)])
-def test_a_good_landing_is_kept_and_can_be_learnt_from(tmp_path: Path, pads: int, network_until: int):
-    kept = sum(add_demonstration(flown_by_hand(seed, pads, network_until), tmp_path) for seed in (20, 21))
-    assert kept == count_demonstrations(tmp_path) > 0
-    for lesson in read(tmp_path / FILE_NAME):
-        assert lesson.begins == network_until
-        cells = relive(lesson, Config())
-        assert cells is not None
-        assert np.isfinite(cells.reward).all()
-
-
-def test_a_crash_or_a_landing_of_the_networks_teaches_nothing(tmp_path: Path):
-    crash = Flight(3)
-    while not crash.over:
-        crash.step(0)
-    assert not add_demonstration(crash, tmp_path)
-    landed = flown_by_hand(20, network_until=10_000)
-    assert not add_demonstration(landed, tmp_path)
-    assert count_demonstrations(tmp_path) == 0

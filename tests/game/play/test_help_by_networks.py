@@ -1,7 +1,7 @@
 """Networks beside the player: why help did not save a flight, when it stepped in, and which one flies elsewhere."""
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -38,13 +38,20 @@ def agent() -> DeepQAgent:
     return DeepQAgent.load(MODELS_DIR / "lander" / "modern")
 
 
+def noisy() -> Iterator[int]:
+    """Hold the left jet, and slip to the main engine now and then; four steps are one press."""
+    rng = np.random.default_rng(2)
+    while True:
+        yield from [1 + 3 * int(rng.random() < 0.15)] * 4
+
+
 def lost(agent: DeepQAgent, mode: Mode, assist: float) -> tuple[Flight, LastChance]:
     """Turn all the way with noisy hands and a help that cannot keep it upright."""
-    flight, chance = Flight(2, agent, hands="noisy"), LastChance(agent)
+    flight, chance, held = Flight(2, agent), LastChance(agent), noisy()
     flight.help(assist, mode)
     while not flight.over:
         chance.note(flight.env)
-        flight.step(1)
+        flight.step(next(held))
     while not chance.known:
         chance.look(50)
     return flight, chance
@@ -63,10 +70,10 @@ def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: Dee
 def test_what_would_have_saved_it_does(agent: DeepQAgent):
     _, chance = lost(agent, Mode.GUARDIAN, 0.01)
     assert chance.seconds is not None
-    again = Flight(2, agent, hands="noisy")
+    again, held = Flight(2, agent), noisy()
     again.help(0.01, Mode.GUARDIAN)
     while float(again.env.time[0]) < chance.seconds:
-        again.step(1)
+        again.step(next(held))
     [plan] = Lookahead(agent).plans(Moment.of(again.env), [(0, (KEYS[0],))])
     assert plan is not None
 

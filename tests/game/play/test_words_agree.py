@@ -72,8 +72,6 @@ SCENES: dict[str, Callable[[Context], PlayScene]] = {
 }
 FREE: dict[str, dict[str, object]] = {
     "three pads": {"three_pads": True},
-    "laggy": {"hands": "laggy"},
-    "no main engine": {"hands": "sensor"},
     "light": {"gravity": 0.8},
     "slow": {"pace": 0.5},
     "guarded": {"assist": 0.7, "copilot": "guardian"},
@@ -249,7 +247,7 @@ def test_a_change_after_the_end_changes_nothing_of_what_was_flown(open_game: Ope
     reading.driver.key(pygame.K_UP)
     end(reading.driver, Outcome.LANDED)
     before = reading.check(70)
-    for name, value in {"assist": 1.0, "gravity": 0.6, "pace": 0.5, "hands": "laggy"}.items():
+    for name, value in {"assist": 1.0, "gravity": 0.6, "pace": 0.5}.items():
         setattr(reading.driver.app.context.settings, name, value)
     after = reading.check(4)
     assert (after.flew, after.counts) == (before.flew, before.counts) == (set(), set()), "nobody but you"

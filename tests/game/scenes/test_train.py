@@ -11,23 +11,17 @@ from pathlib import Path
 import pygame
 import pytest
 
-from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
-from ai.training.demonstrations import write
-from ai.training.history import History
-from ai.training.lander_session import TAUGHT
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.explain.network_view import NetworkView
-from game.flight.demonstrations import FILE_NAME
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
-from tests.support.demonstrated import demonstrate
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
@@ -132,28 +126,6 @@ def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> N
     train.key(pygame.K_RETURN)
     assert train.top is scene
     train.wait(scene.library.runs)
-
-
-@pytest.mark.slow
-def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
-    scene, notes = train.top, list[str]()
-    train.app.context.note = notes.append
-    train.press_on(texts.TRAIN_TEACH)
-    assert scene.run.state is None, "nothing to learn from, nothing begun"
-    assert texts.TRAIN_NO_LESSONS in notes
-    write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.run.taught and len(scene.run.history))
-    assert scene.run.config.success_pass
-    assert scene.knobs.config.success_pass
-    train.frames(1)
-    assert texts.TRAIN_TAUGHT.format(count=2) in notes
-    train.press_on(texts.TRAIN_SAVE)
-    train.key(pygame.K_RETURN)
-    train.wait(scene.library.runs)
-    (run,) = scene.library.runs()
-    assert "trained on you" in run.name
-    assert sum(each.name == TAUGHT for each in History.read(run.folder).setting_changes) == 1
 
 
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:

@@ -95,5 +95,5 @@ STOPS = [
     Stop("Play", "card", crashed),
     Stop("mission", "card", crashed),
     Stop("Play", "shared", shared, {"assist": 0.6, "three_pads": True}),
-    Stop("Play", "practice", shared, {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}),
+    Stop("Play", "practice", shared, {"gravity": 0.8, "pace": 0.7}),
 ]
