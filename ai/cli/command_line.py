@@ -136,7 +136,6 @@ def configured(preset: Settings, given: list[str]) -> Settings:
     values = preset.to_json()
     for change in given:
         name, equals, text = change.partition("=")
-        name = preset.name_now(name)
         if not equals or name not in values:
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
         try:

@@ -44,8 +44,7 @@ class DigitConfig(Knobs):
     label_smoothing: float = knob(0.05, "Label smoothing: share of each label given to all digits alike.",
                             "learning", low=0.0, high=0.5, live=True)
     ema_decay: float = knob(0.998, "Decay of the moving average of weights that is kept; 0 keeps the last.",
-                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999),
-                            formerly="averaging")
+                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999))
     held_out: int = knob(5_000, "Validation images, never learnt from, to pick the best by.",
                          "learning", low=0, high=30_000)
 

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any, Self
 
 from ai.files.reading import shown
-from ai.files.schema import check_field
+from ai.files.schema import field_problems
 
 
 def knob(
@@ -64,11 +64,9 @@ class Knobs:
     @classmethod
     def problem_of(cls, name: str, value: Any) -> str:
         """Say what is wrong with a value of a field; empty if nothing is."""
+        if problems := field_problems(cls, name, value):
+            return "; ".join(problems)
         described = next(item for item in fields(cls) if item.name == name).metadata
-        try:
-            check_field(cls, name, value)
-        except ValueError as error:
-            return f"{name}: {error}"
         if described["choices"] and value not in described["choices"]:
             return f"{name} is one of {', '.join(described['choices'])}, not {shown(value)}"
         numbers, low, high = value if isinstance(value, tuple) else (value,), described["low"], described["high"]

@@ -162,7 +162,10 @@ def read_array(path: str | Path, shape: tuple[int, ...], dtype: npt.DTypeLike) -
     Raises OSError, or ValueError if it holds another.
     """
     wanted, name = np.dtype(dtype), Path(path).name
-    array = _load(path, math.prod(shape) * wanted.itemsize + _HEADER)
+    try:
+        array = _load(path, math.prod(shape) * wanted.itemsize + _HEADER)
+    except ValueError as error:
+        raise ValueError(f"{name} {error}") from error
     if not isinstance(array, np.ndarray):
         raise ValueError(f"{name} holds several arrays")
     if (array.shape, array.dtype) != (shape, wanted):

@@ -137,9 +137,9 @@ def _sorted_out(parts: Iterable[tuple[str, Check, Any]]) -> tuple[dict[str, Any]
     return right, problems
 
 
-def check_field(kind: type, name: str, value: Any) -> None:
-    """Raise ValueError for a value that is not of the type of a dataclass's field."""
-    _fields_of(kind)[name][0](value)
+def field_problems(kind: type, name: str, value: Any) -> list[str]:
+    """Return what is wrong with a value of a field of a dataclass, by its type."""
+    return _sorted_out([(name, _fields_of(kind)[name][0], value)])[1]
 
 
 @cache
@@ -167,8 +167,8 @@ def _check_of(hint: Any) -> Check:
 
 
 def _made(kind: type, value: Any) -> Any:
-    """Check for a dataclass: one that is made already is as good as its values."""
-    return value if isinstance(value, kind) else read_as(kind, value)
+    """Check for a dataclass, which may have been made already."""
+    return read_as(kind, vars(value) if isinstance(value, kind) else value)
 
 
 def _ruled(check: Check, rules: tuple[Check, ...], value: Any) -> Any:

@@ -19,7 +19,7 @@ import numpy as np
 
 from ai.digits.config import DigitConfig
 from ai.files import Count, OneOf, Seed, Share, Sized, Within, read_as, read_json
-from ai.files.knobs import Knobs, field_problem
+from ai.files.knobs import Knobs
 from ai.training.config import ANYWHERE, LANDER, Config
 
 AGENT, DIGITS = "agent", "digits"  # kinds of run
@@ -253,7 +253,7 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
     for value in dimension.choices or dimension.ends:
-        if problem := field_problem(item, config.value_from_json(name, int(value) if dimension.whole else value)):
+        if problem := config.problem_of(name, config.value_from_json(name, int(value) if dimension.whole else value)):
             raise ValueError(problem)
     return dimension
 
@@ -264,7 +264,7 @@ def knob_space(config: Knobs, names: Iterable[str]) -> Space:
     Of a group, knobs that change nothing because another one is off are left out. Raises ValueError for other names.
     """
     space: Space = {}
-    for name in map(config.name_now, names):
+    for name in names:
         group = [item.name for item in fields(config) if item.metadata["group"] == name]
         for each in [each for each in group if each not in config.unused()] or [name]:
             space[each] = knob_dimension(config, each)
@@ -280,4 +280,4 @@ def read_space(config: Knobs, file: Path) -> Space:
     asked = read_json(file)
     if not isinstance(asked, dict) or not asked:
         raise ValueError(f"{file}: a space is a range by the name of each knob")
-    return {(now := config.name_now(name)): knob_dimension(config, now, each) for name, each in asked.items()}
+    return {name: knob_dimension(config, name, each) for name, each in asked.items()}

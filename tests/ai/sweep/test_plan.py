@@ -60,7 +60,6 @@ def test_a_group_stands_for_its_knobs_that_change_anything():
     assert "replay_size" in space
     assert "priority_exponent" not in space, "replay is not prioritised, so it changes nothing"
     assert "tau" in knob_space(MODERN, ["memory", "tau"])
-    assert "updates" not in knob_space(MODERN, ["updates"])  # a former name is read
     assert knob_space(DIGIT_PRESETS["modern"], ["images"])
 
 
