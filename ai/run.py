@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar, Final, Self
 
@@ -25,14 +25,15 @@ class Run(ABC):
         clock: counts seconds.
         seconds: spent in training, as the caller counts them.
         best: score of the best network so far; None if none has been measured.
-        lost: what could not be restored of a run that goes on, in words; empty for the very same run.
+        lost: what could not be restored of a run that goes on, in words.
         diverged: whether what it remembers may be broken: then there is no state to go on from.
-        around: what whoever led it has kept in the state that it goes on from.
-        states: has the blocks of that state; None for a new run.
+        around: what whoever led it has kept in the state that it goes on from; JSON can hold it.
+        needs_state: whether no such run goes on without its state.
 
     """
 
     kind: ClassVar[FolderKind]
+    needs_state: ClassVar[bool] = False
     config: Any
 
     def __init__(self, config: Any, seed: int) -> None:  # noqa: ARG002 - each kind keeps it where it is used
@@ -42,7 +43,6 @@ class Run(ABC):
         self.best: Any = None
         self.lost, self.diverged = "", False
         self.around: dict[str, Any] = {}
-        self.states: Any = None
 
     @property
     @abstractmethod
@@ -58,11 +58,6 @@ class Run(ABC):
     def done(self) -> bool:
         """Whether there is nothing left to train."""
         return self.steps is not None and self.moment >= self.steps
-
-    @property
-    def buffers(self) -> Mapping[str, Any]:
-        """Replay buffers that belong to its state."""
-        return {}
 
     @abstractmethod
     def advance(self) -> Any:
@@ -92,12 +87,11 @@ class Run(ABC):
 
     @abstractmethod
     def state(self) -> dict[str, Any]:
-        """Return copies of all that the run goes on from, besides its settings and replay buffers."""
+        """Return copies of what the run goes on from and its folder does not hold: arrays, and what JSON can hold."""
 
     @abstractmethod
-    def load_state(self, state: dict[str, Any] | None, folder: Path) -> bool:
-        """Go on from a state that lies beside `folder`; return whether that was done, or else say in `lost` why not.
+    def load_state(self, state: dict[str, Any]) -> None:
+        """Go on from what `state` returned.
 
-        Raises ModelFormatError where nothing can go on without one, and OSError, KeyError, TypeError, AttributeError,
-        ArithmeticError or ValueError for what no such run can have been.
+        Raises KeyError, TypeError, AttributeError, ArithmeticError or ValueError for what no such run can have been.
         """

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Final
-
 import numpy as np
 
 from ai.agent.replay import Transition
 from ai.environment import Bools, Floats, Ints
-from ai.files import array_like, count_of
-
-_KEPT: Final = ("_states", "_actions", "_returns", "_open")
 
 
 class NStep:
@@ -65,33 +59,13 @@ class NStep:
         )
         return transitions, slot
 
-    def state(self) -> dict[str, Any]:
-        """Return copies of all that the next `add` depends on, besides the settings."""
-        return {name: getattr(self, name).copy() for name in _KEPT} if self._states.size else {}
-
-    def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
-        """Go on from what `state` returned, for observations like this one (slots, features).
-
-        Raises KeyError, TypeError or ValueError for anything else.
-        """
-        if state:
-            self._start(*observation.shape)
-            oldest = count_of(state.get("count", 0)) % self.n  # earlier versions wrote rows in a ring
-            for name in _KEPT:
-                rows = array_like(getattr(self, name), state[name], name)
-                setattr(self, name, np.roll(rows, -oldest, axis=0))
-
 
 class Episodes:
     """Transitions of episodes that go on, with the slot of each, until those that end well are passed on whole."""
 
     def __init__(self, num_features: int) -> None:
-        self._forget(num_features)
-
-    def _forget(self, num_features: int, count: int = 0) -> None:
-        """Begin with so many transitions in which all is 0."""
-        states, numbers = np.zeros((count, num_features), dtype=np.float32), np.zeros(count, dtype=np.intp)
-        rewards, terminal = np.zeros(count, dtype=np.float32), np.zeros(count, dtype=bool)
+        states, numbers = np.zeros((0, num_features), dtype=np.float32), np.zeros(0, dtype=np.intp)
+        rewards, terminal = np.zeros(0, dtype=np.float32), np.zeros(0, dtype=bool)
         self._transitions, self._slots = Transition(states, states, numbers, rewards, terminal, numbers), numbers
 
     def add(self, transitions: Transition, slots: Ints, ended: Bools, success: Bools) -> list[Transition]:
@@ -107,25 +81,6 @@ class Episodes:
             goes_on = ~ended[self._slots]
             self._transitions, self._slots = _taken(self._transitions, goes_on), self._slots[goes_on]
         return whole
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of all that was collected: transitions by field, and their slots."""
-        held = {"slots": self._slots, **self._transitions._asdict()}
-        return {name: part.copy() for name, part in held.items()} if len(self._slots) else {}
-
-    def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
-        """Go on from what `state` returned, or from nothing, for observations like this one (slots, features).
-
-        Raises KeyError, TypeError or ValueError for anything else.
-        """
-        self._forget(observation.shape[1], len(state["slots"]) if state else 0)
-        if state:
-            held = {"slots": self._slots, **self._transitions._asdict()}
-            held = {name: array_like(part, state[name], name) for name, part in held.items()}
-            self._slots = held.pop("slots")
-            self._transitions = Transition(**held)
-            if (self._slots < 0).any() or (self._slots >= len(observation)).any():
-                raise ValueError("transitions are of no slot of the environment")
 
 
 def _taken(transitions: Transition, rows: Bools) -> Transition:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from ai.agent.config import AgentConfig
 from ai.environment import Doubles, Floats, Ints
+from ai.files import array_like
 
 
 class Transition(NamedTuple):
@@ -90,9 +92,29 @@ class ReplayBuffer:
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
         """Take the errors (n,) of the transitions at `rows` as their priorities; without effect in uniform replay."""
 
+    def state(self, most: int) -> dict[str, NDArray[Any]]:
+        """Return copies of the newest transitions, at most so many, oldest first: each field by its name."""
+        return self.at(self._newest(most))._asdict()
+
+    def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
+        """Fill an empty buffer with what `state` returned.
+
+        Raises KeyError, TypeError or ValueError for what no buffer of an agent with so many actions can have held.
+        """
+        count, held = len(state["action"]), {}
+        for name, part in self.transitions._asdict().items():
+            held[name] = array_like(np.empty((count, *part.shape[1:]), part.dtype), state[name], name)
+        if count > self.capacity or ((held["action"] < 0) | (held["action"] >= num_actions)).any():
+            raise ValueError("the memory is of another agent")
+        self.add(Transition(**held))
+
     def clear(self) -> None:
         """Forget all transitions."""
         self._drop(self.size)
+
+    def _newest(self, most: int) -> Ints:
+        """Return the rows of the newest transitions, at most so many, oldest first."""
+        return (self.start + np.arange(max(0, self.size - most), self.size)) % self.capacity
 
     def _drop(self, count: int) -> None:
         """Forget the oldest."""
@@ -132,7 +154,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         Rows are found in the running sum of all priorities, by one draw from each of `count` equal parts of the total:
         less noise than independent draws. Weights are relative to the largest of them.
         """
-        reached = self.priorities.cumsum()
+        reached = self.priorities[: min(self.capacity, self.start + self.size)].cumsum()
         draws = (np.arange(1, count + 1) - rng.random(count)) / count * reached[-1]  # above 0: no empty row is found
         rows = reached.searchsorted(draws)
         rng.shuffle(rows)
@@ -145,6 +167,19 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
         self.largest = max(self.largest, float(priorities.max()))
         self.priorities[rows] = priorities
+
+    def state(self, most: int) -> dict[str, NDArray[Any]]:
+        """Return copies of the newest transitions, with their priorities."""
+        return super().state(most) | {"priorities": self.priorities[self._newest(most)]}
+
+    def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
+        """Fill an empty buffer with what `state` returned; raises as that of every buffer."""
+        super().load_state(state, num_actions)
+        priorities = array_like(np.empty(self.size), state["priorities"], "priorities")
+        if (priorities <= 0).any():
+            raise ValueError("priorities are above 0")
+        self.priorities[self._newest(self.size)] = priorities
+        self.largest = max(self.largest, float(priorities.max(initial=0.0)))
 
     def _drop(self, count: int) -> None:
         self.priorities[(self.start + np.arange(count)) % self.capacity] = 0.0

@@ -6,7 +6,7 @@ Its replay buffers and its random generator are not kept.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
@@ -18,12 +18,10 @@ from ai.environment import Floats
 from ai.files import (
     NETWORK,
     FolderKind,
-    array_like,
     atomic_folder,
     check_header,
     count_of,
     inside,
-    number_of,
     read_arrays,
     read_as,
     read_json,
@@ -143,30 +141,3 @@ def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, A
             raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
 
     return read_arrays(path, len(shapes) * values.size * 8 + _SLACK, expect)
-
-
-def agent_state(agent: DeepQAgent) -> dict[str, Any]:
-    """Return copies of all that an agent's learning goes on from, besides its settings and replay buffers."""
-    normalizer = agent.normalizer.to_json() if agent.normalizer else None
-    numbers = {name: getattr(agent, name) for name in ("decisions", "gradient_steps", "loss", "mean_q")}
-    networks = {"online": agent.online.values.copy(), "target": agent.target.values.copy()}
-    learning = {"rng": agent.rng.bit_generator.state, "optimizer": agent.optimizer.state(), "normalizer": normalizer}
-    return numbers | networks | learning | {"n_step": agent.n_step.state(), "episodes": agent.episodes.state()}
-
-
-def load_agent_state(agent: DeepQAgent, state: Mapping[str, Any], num_envs: int) -> None:
-    """Let an agent go on from what `agent_state` returned, in an environment of so many slots.
-
-    Raises KeyError, TypeError, OverflowError or ValueError for what no such agent can have been.
-    """
-    agent.rng.bit_generator.state = state["rng"]
-    for name, network in (("online", agent.online), ("target", agent.target)):
-        network.values = array_like(network.values, state[name], name)
-    agent.optimizer.load_state(state["optimizer"], agent.online.values)
-    if agent.normalizer:
-        agent.normalizer.load(state["normalizer"])
-    observation = np.zeros((num_envs, agent.num_features), np.float32)
-    agent.n_step.load_state(state["n_step"], observation)
-    agent.episodes.load_state(state["episodes"], observation)
-    agent.decisions, agent.gradient_steps = count_of(state["decisions"]), count_of(state["gradient_steps"])
-    agent.loss, agent.mean_q = float(number_of(state["loss"])), float(number_of(state["mean_q"]))

@@ -24,7 +24,6 @@ from ai.files import (
     Share,
     Sized,
     array_like,
-    count_of,
     inside,
     number_of,
     problem_in,
@@ -36,6 +35,7 @@ from ai.nn import OPTIMIZERS, Array, ModelFormatError
 from ai.run import TRAINING_FILE, Run
 
 SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
+_OPTIMIZER: Final = "optimizer."  # begins the names of what the optimizer remembers, in a state
 
 
 @dataclass
@@ -67,7 +67,7 @@ class DigitTraining(Run):
 
     """
 
-    kind = KIND
+    kind, needs_state = KIND, True
     config: DigitConfig
 
     def __init__(self, config: DigitConfig, seed: int = 0, data: tuple[Images, Labels] | None = None) -> None:
@@ -224,39 +224,29 @@ class DigitTraining(Run):
 
     @classmethod
     def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
-        config, seed, step = read_settings(folder)
+        config, described = read_settings(folder)
         try:
-            run = cls(config, seed, data)
+            run = cls(config, described.seed, data)
         except (ValueError, OverflowError) as error:
             raise ModelFormatError(folder, [str(error)]) from error
-        run.step = step
+        run.step, run.seconds, run.history = described.step, described.seconds, list(described.history)
+        run.best = described.held_out
+        if run.best is not None:
+            run.best_values = DigitClassifier.load(folder).network.values.copy()
         return run
 
     def state(self) -> dict[str, Any]:
-        """Return copies of what it goes on from; each step has its own randomness."""
-        return {
-            "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
-            "best_values": None if self.best_values is None else self.best_values.copy(),
-            "loss": self._loss, "accuracy": self._accuracy, "values": self.classifier.network.values.copy(),
-            "average": self.average.copy(), "optimizer": self.optimizer.state(),
-        }  # fmt: skip
+        values, means = self.classifier.network.values, {"loss": self._loss, "accuracy": self._accuracy}
+        optimizer = {f"{_OPTIMIZER}{name}": part for name, part in self.optimizer.state().items()}
+        return means | optimizer | {"values": values.copy(), "average": self.average.copy()}
 
-    def load_state(self, state: dict[str, Any] | None, folder: Path) -> bool:
-        """Go on from what `state` returned; nothing goes on without one."""
-        if state is None:
-            raise ModelFormatError(
-                folder, ["there is nothing to go on with: the run is finished, or its state is gone"]
-            )
-        network, best = self.classifier.network, state["best_values"]
+    def load_state(self, state: dict[str, Any]) -> None:
+        network = self.classifier.network
         network.values = array_like(network.values, state["values"], "values")
         self.average[...] = array_like(self.average, state["average"], "average")
-        self.optimizer.load_state(state["optimizer"], network.values)
-        self.best_values = None if best is None else array_like(self.average, best, "best_values")
-        self.best = None if state["best"] is None else float(number_of(state["best"], 0))
-        self.step, self.seconds = count_of(state["step"]), float(number_of(state["seconds"], 0))
+        held = {name.removeprefix(_OPTIMIZER): part for name, part in state.items() if name.startswith(_OPTIMIZER)}
+        self.optimizer.load_state(held, network.values)
         self._loss, self._accuracy = float(number_of(state["loss"])), float(number_of(state["accuracy"]))
-        self.history = list(state["history"])
-        return True
 
 
 def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> float:
@@ -285,11 +275,16 @@ class DigitRunSummary:
 
 
 @dataclass(frozen=True)
-class _Described:
+class DescribedRun:
+    """What the training file of a run says."""
+
     preset: Annotated[str, OneOf(DIGIT_PRESETS)]
     changes: dict[str, Any]
     seed: Seed
     step: Count
+    seconds: Duration
+    held_out: Share | None
+    history: tuple[dict[str, Any], ...]
 
 
 def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
@@ -297,13 +292,13 @@ def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
     return read_as(DigitRunSummary, read_json(folder / file))
 
 
-def read_settings(folder: Path) -> tuple[DigitConfig, int, int]:
-    """Return the settings and the seed of a run in a folder, and its steps so far; raises ModelFormatError."""
+def read_settings(folder: Path) -> tuple[DigitConfig, DescribedRun]:
+    """Return the settings of a run in a folder, and what else its training file says; raises ModelFormatError."""
     DigitClassifier.load(folder)
     try:
-        described = read_as(_Described, read_json(inside(folder, TRAINING_FILE)))
+        described = read_as(DescribedRun, read_json(inside(folder, TRAINING_FILE)))
         preset = DIGIT_PRESETS[described.preset].to_json()
         config = DigitConfig.from_json(preset | described.changes)
     except (OSError, ValueError, TypeError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
-    return config, described.seed, described.step
+    return config, described

@@ -34,7 +34,7 @@ from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome
 from ai.lander.rules import nearest_action
 
-VERSION: Final = 2
+VERSION: Final = 3
 BEGIN, END = f"tranq{VERSION}-", "-over"
 _LONGEST_TEXT: Final = 1_000_000  # characters of a text in which codes are looked for
 _LARGEST: Final = 4 * LONGEST  # bytes that a code may unfold to: several for each step
@@ -49,8 +49,8 @@ _RUN: Final = 21  # steps of a run, at most: a run fits a byte below _MOVES
 _MOVES: Final = b"\xff"  # comes before the moves of the sticks
 # What deflating takes to have been said before: words of some codes, and how most of them begin.
 _USUAL: Final = (
-    b'"daily","wind","gravity":[[0,0.7"rung_"pads":3,"wider_pads":true,"untimed":true},"leg":[2,12.5,false]'
-    b'"outcome":"CRASHED","points":0,"end":[-{"seed":1,"spawn":"random","pads":1,"mission":"","gravity":[],'
+    b'"daily","wind","rung_"pads":3,"wider_pads":true,"untimed":true},"leg":[2,12.5,false]'
+    b'"outcome":"CRASHED","points":0,"end":[-{"seed":1,"spawn":"random","pads":1,"mission":"",'
     b'"easing":{"wider_pads":false,"untimed":false},"area":1,"leg":null,"course":"","barred":"","outcome":"LANDED",'
     b'"points":9'
 )
@@ -151,7 +151,7 @@ def _read(data: bytes) -> SharedFlight:
     if not unpacker.eof or unpacker.unused_data:
         raise ValueError("it is longer than any flight, or has no end")
     content = read_as(_Content, parse_json(line.decode()))
-    if content.leg and (content.mission or content.gravity or content.pads != 1):
+    if content.leg and (content.mission or content.pads != 1):
         raise ValueError("a leg of a descent has a start and rules of its own")
     x, y, angle = (number / _GRID for number in content.end)
     claim = Claim(Outcome[content.outcome], content.points, (x, y, angle))

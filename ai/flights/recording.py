@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final, Self
 import numpy as np
 
 from ai.environment import Doubles
-from ai.files import OneOf, Seed, Sized, Within
+from ai.files import OneOf, Seed, Within
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS, STARTS, Mission
@@ -21,12 +21,10 @@ UNHURRIED: Final = 1200.0  # seconds that a flight may take without its time lim
 AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
 STEPS: Final = 16  # from no thrust to all: thrust is recorded in them, so that a flight can be flown again exactly
-_MOST_CHANGES: Final = 1_000  # of gravity
 
 Shares = tuple[int, int]  # of the main engine, 0 to STEPS, and of the jets, -STEPS, left, to STEPS, right
 End = tuple[float, float, float]  # x, y in metres, angle in rad
 LegAsList = tuple[Annotated[int, Within(1, MOST_LEGS)], Annotated[float, Within(0, TANK)], bool] | None
-_Change = tuple[Annotated[int, Within(0, LONGEST)], Annotated[float, Within(0.5, 2.0)]]
 
 
 def full(action: int) -> Shares:
@@ -73,12 +71,6 @@ class StickHolder(Enum):
     NETWORK = "network"
 
 
-def _in_order(changes: tuple[_Change, ...]) -> None:
-    steps = [step for step, _ in changes]
-    if steps != sorted(set(steps)):
-        raise ValueError("its changes of gravity are not in order")
-
-
 @dataclass
 class Start:
     """All that a flight follows from besides its inputs; `ai.files.schema.read_as` checks it as files hold it."""
@@ -87,13 +79,8 @@ class Start:
     spawn: Annotated[str, OneOf(SPAWNS)]
     pads: Annotated[int, OneOf((1, 3))] = 1
     mission: Annotated[str, OneOf(("", *MISSIONS))] = ""
-    gravity: Annotated[tuple[_Change, ...], Sized(_MOST_CHANGES), _in_order] = ()  # first step, share of the normal one
     easing: Easing = AS_IT_IS  # what gave the pilot more room
     area: Annotated[int, OneOf(range(len(AREAS)))] = AREA  # version of its edges, in `ai.lander.rules.AREAS`
-
-    def gravity_at(self, step: int) -> float:
-        """Return the share of normal gravity during a step."""
-        return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)
 
 
 @dataclass

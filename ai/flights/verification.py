@@ -67,15 +67,15 @@ def day_of(seed: int) -> date | None:
 
 
 def in_its_place(flight: SharedFlight) -> bool:
-    """Whether a flight began where its course begins, under the gravity, fuel and limits of that place."""
+    """Whether a flight began where its course begins, with the fuel of that place."""
     recording, course = flight.recording, flight.course
     start = recording.spawn, recording.pads, recording.mission, recording.leg
     if course == DAILY:
-        return start == ("random", 3, "", None) and not recording.gravity and day_of(recording.seed) is not None
+        return start == ("random", 3, "", None) and day_of(recording.seed) is not None
     if course in MISSIONS:
-        return start == ("random", 1, course, None) and not recording.gravity
+        return start == ("random", 1, course, None)
     if leg := recording.leg:  # one can be raced too, as a flight of no course
-        plain = start[:3] == ("random", 1, "") and not recording.gravity and recording.easing == AS_IT_IS
+        plain = start[:3] == ("random", 1, "") and recording.easing == AS_IT_IS
         return course in ("", DESCENT) and plain and can_begin(recording.seed, leg)
     usual = recording.spawn == "random" or (recording.spawn in RUNGS and recording.pads == 1)
     return course == "" and start[2:] == ("", None) and usual
@@ -113,7 +113,7 @@ def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:
     """Return what a lander has earned so far in the flight that is recorded."""
     outcome, fuel = Outcome(int(env.outcome[slot])), float(env.fuel[slot])
     mission = MISSIONS.get(recording.mission)
-    as_it_is = recording.easing == AS_IT_IS and not recording.gravity
+    as_it_is = recording.easing == AS_IT_IS
     medal = mission.medal(fuel, float(env.time[slot])) if mission and as_it_is and outcome is Outcome.LANDED else 0
     (x, y), angle = env.position[slot].tolist(), float(env.angle[slot])
     return Earned(outcome, landing_score(env, slot), medal, int(env.steps[slot]), fuel, (x, y, angle))
@@ -144,22 +144,18 @@ def _together(recording: Recording) -> object:
     if recording.leg:
         return object()  # a leg of a descent has an environment of its own
     seed = recording.seed if recording.pads > 1 else 0
-    rules = tuple(recording.gravity), recording.easing, recording.area
-    return recording.mission, recording.spawn, recording.pads, seed, rules
+    return recording.mission, recording.spawn, recording.pads, seed, recording.easing, recording.area
 
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
-    """Fly recordings of one ground and gravity again at once; return what each earned."""
+    """Fly recordings of one ground again at once; return what each earned."""
     like, lengths = recordings[0], np.array([len(each.actions) for each in recordings])
     env = begun(like, [each.seed for each in recordings])
     actions = np.zeros((lengths.max(), len(recordings)), dtype=np.intp)
     for slot, each in enumerate(recordings):
         actions[: lengths[slot], slot] = each.actions
     found = {slot: earned(env, like, slot) for slot in np.flatnonzero(lengths == 0).tolist()}
-    gravity = dict(like.gravity)
     for step, row in enumerate(actions):
-        if step in gravity:
-            env.gravity = gravity[step] * env.params.gravity
         env.fly(row, _shares(recordings, step, row))
         found |= {slot: earned(env, like, slot) for slot in np.flatnonzero(lengths == step + 1).tolist()}
     return [found[slot] for slot in range(len(recordings))]

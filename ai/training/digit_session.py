@@ -12,11 +12,9 @@ from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.training import DigitProgress, DigitTraining
 from ai.digits.validation import ValidationReading
 from ai.explain.digit_lesson import explain_digit
-from ai.files import array_like, number_of
 from ai.nn import Array
 from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
 from ai.training.session import Session
-from ai.training.state import State
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 _LARGEST: Final = float(np.finfo(np.float16).max)
@@ -34,15 +32,9 @@ class DigitSession(Session[DigitTraining]):
         self._began = self._point_at = self._filters_at = training.seconds
         self._reading: ValidationReading | None = None
         self._best: tuple[float, Array] | None = None  # of all that was read, the accuracy and the values
+        if training.best is not None and training.best_values is not None:
+            self._best = training.best, training.best_values.copy()
         self._looking = 0.0  # seconds
-
-    def state(self) -> State:
-        best = self._best
-        return {} if best is None else {"accuracy": best[0], "values": best[1].copy()}
-
-    def load_state(self, state: State) -> None:
-        values = array_like(self.training.average, state["values"], "the best network")
-        self._best = float(number_of(state["accuracy"], 0)), values
 
     def show(self) -> None:
         """Tell the filters of the first layer as they are now, of the weights that learn, if that is due."""

@@ -11,10 +11,8 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.environment import SUCCESS, Bools, Doubles, Floats, Ints, StepResult
-from ai.files import count_of
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
-from ai.training.state import State
 from ai.training.tasks import Score, Task, Trial
 
 if TYPE_CHECKING:
@@ -52,11 +50,7 @@ class GymScore(Score):
 
 
 class GymEnv:
-    """Several environments of Gymnasium as one of ours (`ai.environment.Env`), stepped one by one.
-
-    Nothing of theirs can be stored. So that each can be brought to where it was, its random numbers before its last
-    reset are kept, and its actions since: see `restore`.
-    """
+    """Several environments of Gymnasium as one of ours (`ai.environment.Env`), stepped one by one."""
 
     def __init__(
         self,
@@ -78,56 +72,16 @@ class GymEnv:
         self.lengths: Ints = np.zeros(num_envs, dtype=np.intp)
         self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
         self._terminated, self._truncated = np.zeros((2, num_envs), dtype=bool)
-        self._begun: list[Any] = [None] * num_envs  # a seed, or the state of a generator
-        self._actions: list[list[int]] = [[] for _ in range(num_envs)]
 
     def reset(self, mask: Bools | None = None) -> Floats:
         for slot in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             # Seeded once; from then on each environment goes on with its own stream.
             seed, self._seeds[slot] = self._seeds[slot], None
-            self._begin(slot, self._envs[slot].unwrapped.np_random.bit_generator.state if seed is None else seed)
+            observation, _ = self._envs[slot].reset(seed=seed)
+            self._observation[slot] = np.ravel(observation)
+            for kept in (self.returns, self.lengths, self.outcome, self._terminated, self._truncated):
+                kept[slot] = 0
         return self._observation.copy()
-
-    def _begin(self, slot: int, begun: Any) -> None:
-        """Begin an episode from a seed, or from the state of the environment's own generator."""
-        if isinstance(begun, dict):
-            self._envs[slot].unwrapped.np_random.bit_generator.state = begun
-        observation, _ = self._envs[slot].reset(seed=begun if isinstance(begun, int) else None)
-        self._begun[slot] = begun
-        self._actions[slot].clear()
-        self._observation[slot] = np.ravel(observation)
-        for kept in (self.returns, self.lengths, self.outcome, self._terminated, self._truncated):
-            kept[slot] = 0
-
-    def state(self) -> State:
-        """Return what each episode began from and its actions, and what came of them."""
-        count = max(map(len, self._actions))
-        actions = np.array([taken + [-1] * (count - len(taken)) for taken in self._actions], np.intp)
-        begun = {"begun": self._begun.copy(), "actions": actions.reshape(self.num_envs, count)}
-        came = {"landings": self.landings, "returns": self.returns.copy(), "outcome": self.outcome.copy()}
-        return begun | came | {"observation": self._observation.copy()}
-
-    def restore(self, state: State) -> bool:
-        """Begin the episodes of a state again, and take its actions again; return whether that led to the same moment.
-
-        It does where an environment's chance is all drawn from the generator that Gymnasium gives it; else, all
-        episodes begin anew. Raises KeyError, TypeError, OverflowError or ValueError for what no state can be.
-        """
-        if not (state["actions"] < self._envs[0].action_space.n).all():  # type: ignore[attr-defined]
-            raise ValueError("actions are none of the environment's")
-        for slot, (begun, taken) in enumerate(zip(state["begun"], state["actions"].tolist(), strict=True)):
-            self._envs[slot].reset(seed=self._seeds[slot])  # gives it a generator
-            self._seeds[slot] = None
-            self._begin(slot, begun if isinstance(begun, dict) else count_of(begun))
-            for action in taken:
-                if action >= 0 and self.outcome[slot] == GOING_ON:
-                    self._step_one(slot, action)
-        names = ("_observation", "returns", "outcome")
-        same = all(np.array_equal(getattr(self, name), state[name.lstrip("_")]) for name in names)
-        self.landings = count_of(state["landings"])
-        if not same:
-            self.reset()
-        return same
 
     def step(self, actions: Ints) -> StepResult:
         reward = np.zeros(self.num_envs, dtype=np.float32)
@@ -139,7 +93,6 @@ class GymEnv:
 
     def _step_one(self, slot: int, action: int) -> float:
         total, ended = 0.0, False
-        self._actions[slot].append(action)
         for _ in range(self.frame_skip):
             observation, reward, terminated, truncated, _ = self._envs[slot].step(action + self._first_action)
             total += float(reward)
@@ -197,14 +150,6 @@ class GymTask(Task[GymScore]):
     def make_env(self, rng: np.random.Generator) -> GymEnv:
         make = partial(self._make, PATIENCE.get(self.config.env))
         return GymEnv(make, self.config.num_envs, rng, self.threshold, self.config.frame_skip)
-
-    def env_state(self, env: GymEnv) -> State:
-        return env.state()
-
-    def restore_env(self, env: GymEnv, state: State) -> str:
-        if env.restore(state):
-            return ""
-        return f"{self.config.env} cannot be brought back to a moment, so its episodes begin anew"
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[GymScore]:
         """Play so many episodes side by side, without exploration.

@@ -10,7 +10,6 @@ from typing import Any, Final
 import numpy as np
 
 from ai.environment import StepResult
-from ai.files import count_of
 from ai.lander.environment import LanderEnv
 from ai.pilots.own import pay_by
 from ai.training.config import Config, in_force
@@ -20,7 +19,6 @@ from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Val
 from ai.training.loop import Progress, Training
 from ai.training.messages import DIVERGED, NetworkState, SwarmState
 from ai.training.session import Session, Turns
-from ai.training.state import State
 from ai.training.tasks import Score
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -85,13 +83,8 @@ class LanderSession(Session[Training]):
         """Whether a network is edited: that is only looked at, until it learns on from there."""
         return self.training.agent.paused
 
-    def state(self) -> State:
-        due = {"point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning}
-        return due | {"paid_by": self.paid_by}
-
-    def load_state(self, state: State) -> None:
-        self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
-        self._began_learning = count_of(state["began_learning"])
+    def around(self) -> dict[str, Any]:
+        return {"paid_by": self.paid_by}
 
     def show(self) -> None:
         agent, training = self.training.agent, self.training

@@ -8,7 +8,7 @@ around it: schedules of the environment, episodes that end and begin, statistics
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator
 from copy import deepcopy
 from dataclasses import dataclass
 from itertools import repeat
@@ -22,15 +22,15 @@ from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
-from ai.agent.storage import KIND, LAST, agent_state, load_agent_state, write_agent
+from ai.agent.storage import KIND, LAST, write_agent
 from ai.environment import Env, Floats, StepResult
-from ai.files import array_like, count_of, inside, number_of, problem_in, read_json
+from ai.files import count_of, inside, number_of, problem_in, read_json
 from ai.files.knobs import nearest_preset
 from ai.nn import ModelFormatError
 from ai.run import TRAINING_FILE, Run
 from ai.training.config import ANYWHERE, LANDER, Config, load_agent, presets_of
 from ai.training.gym_task import GymTask
-from ai.training.state import State, restore_buffer
+from ai.training.state import MOST, State
 from ai.training.statistics import EpisodeStatistics
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
@@ -52,7 +52,7 @@ class Progress:
     epsilon: float
     stage: int  # of the curriculum
     steps_per_second: float  # over the last hundred decisions, by the clock
-    shares: tuple[float, ...]  # of the same that ended in outcome 1, 2, 3 and 4
+    shares: tuple[float, ...]  # of the last 100 episodes that ended in outcome 1, 2, 3 and 4
     parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
     evaluation: Score | None = None  # when one is finished
     best: Score | None = None
@@ -67,6 +67,8 @@ class Progress:
 
 class Training(Run):
     """Training run of the lander, or of another task: all state that changes as it goes on.
+
+    New flights follow from the seed and from the moment `since` when they begin: 0, or when a run goes on.
 
     Attributes:
         evaluate_every: decisions between two validations, 0 for never; by default, as often as suits the task.
@@ -87,6 +89,7 @@ class Training(Run):
         *,
         evaluate_every: int | None = None,
         validation_episodes: int | None = None,
+        since: int = 0,
     ) -> None:
         super().__init__(config, seed)
         self.task = task = task_of(config)
@@ -95,7 +98,7 @@ class Training(Run):
         self.validation_pace: int | None = None
         self.evaluated: int | None = None
         self.on_step: Callable[[StepResult], None] | None = None
-        agent_rng, env_rng = np.random.default_rng(seed).spawn(2)
+        agent_rng, env_rng = np.random.default_rng([seed, since] if since else seed).spawn(2)
         replay, optimizer = make_replay(config, task.num_features), make_optimizer(config)
         self.agent = self._new_agent(config, agent_rng, replay=replay, optimizer=optimizer)
         self.env: Env = task.make_env(env_rng)
@@ -265,7 +268,7 @@ class Training(Run):
         try:
             last, config = load_agent(inside(folder, LAST), env=env)
             described = read_json(inside(folder, TRAINING_FILE))
-            run = cls(config, count_of(described["seed"], most=10**40))
+            run = cls(config, count_of(described["seed"], most=10**40), since=last.decisions)
             run._go_on_from(best, last, described)
         except OSError as error:
             file = Path(error.filename or LAST).name
@@ -287,72 +290,37 @@ class Training(Run):
                 raise ValueError("the best network and the last one are of different sizes")
             self.best, self.best_network = task.read_score(described["best"]), _network(best)
         self.episodes, self.env.landings = count_of(described["episodes"]), count_of(described["landings"])
+        self.observation = self.env.reset()  # where flights begin depends on the landings
         self.seconds = float(number_of(described["seconds"], 0))
         self.agent.copy_from(last)
 
     @property
     def buffers(self) -> dict[str, ReplayBuffer]:
+        """Replay buffers that there are, by name."""
         agent = self.agent
         return {name: getattr(agent, name) for name in ("replay", "successes") if name in vars(agent)}
 
     def state(self) -> State:
-        best, validated = None, self._validated
-        if self.best is not None and self.best_network is not None:
-            best = {"score": self.best.to_json(), **_described(self.best_network)}
-        return {
-            "episodes": self.episodes, "evaluated": self.evaluated, "seconds": self.seconds, "best": best,
-            "observation": self.observation.copy(), "held": self._held.copy(), "agent": agent_state(self.agent),
-            "env": self.task.env_state(self.env), "statistics": self.statistics.state(),
-            "validation": validated and {
-                "decisions": validated.decisions, **_described(_network(validated))
-            },
-        }  # fmt: skip
+        state: State = {"rng": self.agent.rng.bit_generator.state}
+        room = MOST
+        for name, buffer in self.buffers.items():
+            held = buffer.state(room // buffer.records.itemsize)
+            room -= len(held["action"]) * buffer.records.itemsize
+            state |= {f"{name}.{part}": array for part, array in held.items()}
+        return state
 
-    def load_state(self, state: State | None, folder: Path) -> bool:
-        agent, env = self.agent, self.env
-        if state is None or not np.array_equal(state["agent"]["online"], agent.online.values):
-            self.lost = "its state is not there, so it goes on with an empty memory"
-            return False
-        if lost := self.task.restore_env(env, state["env"]):
-            state = state | {"agent": state["agent"] | {"n_step": {}, "episodes": {}}}
-            self.observation = env.reset(np.zeros(env.num_envs, dtype=bool))
-        else:
-            self.observation = array_like(self.observation, state["observation"], "observation")
-            self._held = array_like(self._held, state["held"], "held")
-            if (self._held < 0).any() or (self._held >= self.task.num_actions).any():
-                raise ValueError("actions are none of the environment's")
-            self.statistics.load_state(state["statistics"])
-        load_agent_state(agent, state["agent"], env.num_envs)
-        buffers = [each for each in state["buffers"].items() if each[0] in ("replay", "successes")]
-        whole = [restore_buffer(folder, getattr(agent, name), each, self.task.num_actions) for name, each in buffers]
-        self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
-        self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
-        self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
-        self.best = self.best_network = None
-        if (saved := state["best"]) is not None:
-            self.best = self.task.read_score(saved["score"])
-            self.best_network = self._read_network(saved, "best")
-        if (saved := state["validation"]) is not None:  # its flights begin anew
-            validated = self.last_agent()
-            validated.restore(*self._read_network(saved, "validated network"))
-            validated.decisions = count_of(saved["decisions"])
-            self._begin_validation(validated)
-        return True
-
-    def _read_network(self, saved: Mapping[str, Any], name: str) -> Network:
-        normalizer = Normalizer(self.task.num_features) if self.agent.normalizer else None
-        if normalizer:
-            normalizer.load(saved["normalizer"])
-        return array_like(self.agent.network.values, saved["values"], name), normalizer
+    def load_state(self, state: State) -> None:
+        self.agent.rng.bit_generator.state = state["rng"]
+        for name in ("replay", "successes"):
+            held = {
+                part.removeprefix(f"{name}."): array for part, array in state.items() if part.startswith(f"{name}.")
+            }
+            if held:
+                getattr(self.agent, name).load_state(held, self.task.num_actions)
 
 
 def _network(agent: DeepQAgent) -> Network:
     return agent.network.values.copy(), deepcopy(agent.normalizer)
-
-
-def _described(network: Network) -> State:
-    values, normalizer = network
-    return {"values": values, "normalizer": normalizer.to_json() if normalizer else None}
 
 
 def task_of(config: Config) -> Task[Any]:

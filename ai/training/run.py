@@ -9,10 +9,13 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+import numpy as np
+
 from ai.files import atomic_folder
+from ai.nn import ModelFormatError
 from ai.run import TRAINING_FILE, Run
 from ai.training.messages import Saved, problem_of
-from ai.training.state import State, StateWriter, going_on, read_state
+from ai.training.state import clear_states, going_on, read_state, write_state
 
 if TYPE_CHECKING:
     from ai.training.history import History
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
 FIRST_SECONDS: Final = 1.5  # after which a run is kept for the first time
 KEEP_SECONDS: Final = 10.0  # between two times
 SHARE: Final = 0.01  # of a run's time that it may stand still for it, at most
+PACE: Final = 2_000_000  # bytes a second that are written at most, in the mean
 
 R = TypeVar("R", bound=Run)
 
@@ -33,7 +37,7 @@ def step(run: Run) -> Any:
 
 
 def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
-    """Go on with a run of a kind that is kept in a folder: the very same, if its state lies beside that.
+    """Go on with a run of a kind that is kept in a folder, with the memory that its state beside that holds.
 
     `Run.lost` says what is missing. `options` are those of `begun`: of an agent, `env` is the environment as the user
     names it, without which "module:Name" is refused. Raises ModelFormatError for anything else.
@@ -41,9 +45,14 @@ def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
     folder = Path(folder)
     run = kind.begun(folder, **options)
     state = read_state(folder, run.moment)
-    with going_on(folder):
-        if run.load_state(state, folder) and state is not None:
-            run.around, run.states = state.get("around", {}), StateWriter(folder, state)
+    if state is not None:
+        with going_on(folder):
+            run.load_state(state)
+            run.around = dict(state["around"])
+    elif kind.needs_state:
+        raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
+    else:
+        run.lost = "its state is not there, so it goes on with an empty memory"
     return run
 
 
@@ -54,7 +63,7 @@ def save(run: Run, folder: str | Path, final: bool = False, *, state: bool = Tru
     Raises OSError if it cannot be written, and ValueError, with the disk left as it was, if the numbers of the
     network are not finite.
     """
-    return _copied(run, Path(folder), run.around if state else None, final)()
+    return _copied(run, Path(folder), run.around if state else None, final)[0]()
 
 
 class Limit:
@@ -91,7 +100,7 @@ class Keeper:
         run: Run,
         folder: Path | None,
         history: History | None = None,
-        around: Callable[[], State] | None = None,
+        around: Callable[[], dict[str, Any]] | None = None,
     ) -> None:
         self._run, self._folder, self._history = run, folder, history
         self._around = around or (lambda: run.around)
@@ -116,14 +125,14 @@ class Keeper:
             self._problem = saved.problem
         if now >= self._due:
             began = time.monotonic()
-            self._writing = self._write(self._folder)
-            self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / SHARE)
+            self._writing, size = self._write(self._folder)
+            self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / SHARE, size / PACE)
         return failures
 
     def save(self, folder: Path, final: bool = False) -> Saved:
         """Keep it in a folder, and wait until it is done; `final` measures it as well."""
         self.wait()
-        return _outcome(folder, self._write(folder, final))
+        return _outcome(folder, self._write(folder, final)[0])
 
     def wait(self) -> None:
         """Wait until what is being written is on the disk."""
@@ -136,41 +145,41 @@ class Keeper:
             self.save(self._folder)
         self._thread.shutdown()
 
-    def _write(self, folder: Path, final: bool = False) -> Future[dict[str, Any]]:
+    def _write(self, folder: Path, final: bool = False) -> tuple[Future[dict[str, Any]], int]:
+        """Begin to write; return what will come of it, and how many bytes its state has."""
         if folder == self._folder:
             self._saved_at = self._run.moment
-        return self._thread.submit(_copied(self._run, folder, self._around(), final, self._history))
+        write, size = _copied(self._run, folder, self._around(), final, self._history)
+        return self._thread.submit(write), size
 
 
 def _copied(
-    run: Run, folder: Path, around: State | None, final: bool, history: History | None = None
-) -> Callable[[], dict[str, Any]]:
-    """Copy what is to be kept of a run, and of what is `around` it; return what writes that, while training goes on.
+    run: Run, folder: Path, around: dict[str, Any] | None, final: bool, history: History | None = None
+) -> tuple[Callable[[], dict[str, Any]], int]:
+    """Copy what is to be kept of a run, and of what is `around` it; return what writes that while training goes on.
 
     That writes the state first, then the network's folder, whole or not at all, and at last deletes the state before;
-    it returns what the training file says. Where there is nothing to go on from (None), no state is left.
+    it returns what the training file says. Where there is nothing to go on from (None), no state is left. Beside it
+    is returned how many bytes the state has.
     """
-    states, prepared = run.states, None
-    if states is None or states.folder != folder:
-        states = StateWriter(folder)
-        run.states = states if around is not None else run.states
+    moment, state = run.moment, None
     if around is not None and not run.diverged and not run.done:
-        prepared = states.prepare(run.moment, run.state() | {"around": around}, run.buffers)
+        state = run.state() | {"around": around}
     described, write_networks = run.snapshot(final)
     history = None if history is None else history.copy()
 
     def write() -> dict[str, Any]:
-        if prepared:
-            states.write(prepared)
+        if state is not None:
+            write_state(folder, moment, state)
         with atomic_folder(folder, run.kind) as temporary:
             write_networks(temporary)
             if history is not None:
                 history.write(temporary)
             (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
-        states.clear(prepared)
+        clear_states(folder, None if state is None else moment)
         return described
 
-    return write
+    return write, sum(part.nbytes for part in (state or {}).values() if isinstance(part, np.ndarray))
 
 
 def _outcome(folder: Path, writing: Future[dict[str, Any]]) -> Saved:

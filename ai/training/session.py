@@ -19,7 +19,6 @@ from ai.training.history import Entry, History, SettingChange
 from ai.training.messages import Command, Refused, RunStarted, problem_of
 from ai.training.run import Keeper, step
 from ai.training.run import resume as resume_run
-from ai.training.state import State, going_on
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
@@ -46,7 +45,7 @@ class Session(ABC, Generic[R]):
     def __init__(self, training: R, keep: Path | None, source: Path | None) -> None:
         self.training, self.keep = training, keep
         self.history = History.read(source, self.columns) if source else History(self.columns)
-        self.keeper = Keeper(training, keep, self.history, self.state)
+        self.keeper = Keeper(training, keep, self.history, self.around)
         self.messages: list[Any] = []
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
@@ -63,11 +62,7 @@ class Session(ABC, Generic[R]):
         kind = cls.kind
         training = resume_run(kind, resume, **options) if resume else kind(config, seed, **options)
         training.clock = clock
-        session = cls(training, keep, resume)
-        with going_on(resume or Path()):
-            if training.around:
-                session.load_state(training.around)
-        return session
+        return cls(training, keep, resume)
 
     @classmethod
     def live(cls, config: Any, seed: int = 0, **options: Any) -> Turns:
@@ -85,13 +80,9 @@ class Session(ABC, Generic[R]):
     def tell(self, progress: Any) -> None:
         """Tell of a step that was taken."""
 
-    @abstractmethod
-    def state(self) -> State:
-        """Return what the session goes on from, besides the run."""
-
-    @abstractmethod
-    def load_state(self, state: State) -> None:
-        """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
+    def around(self) -> dict[str, Any]:
+        """Return what the session goes on from, besides the run: `Run.around` of one that goes on."""
+        return {}
 
     @property
     def keeps_still(self) -> bool:

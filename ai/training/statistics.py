@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from math import sqrt
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from ai.environment import SUCCESS, Doubles, StepResult
-from ai.files import array_like, read_as
 
 RECENT: Final = 100
 OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is not counted
-
-
-@dataclass(frozen=True)
-class _RecentFile:
-    outcomes: tuple[int, ...]
-    returns: tuple[float, ...]
-    parts: tuple[tuple[float, ...], ...]
 
 
 class EpisodeStatistics:
@@ -61,26 +52,6 @@ class EpisodeStatistics:
         if self._paid is not None:
             self._paid[:, result.ended] = 0.0
         self._sum_up()
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of all of it, so that a run goes on in the middle of its episodes."""
-        outcomes, returns, parts = zip(*self._recent, strict=True) if self._recent else ((), (), ())
-        recent = {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]}
-        paid = None if self._paid is None else self._paid.copy()
-        return {"recent": recent, "earned": self.earned.copy(), "paid": paid}
-
-    def load_state(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
-        recent = read_as(_RecentFile, state["recent"])
-        count, parts = len(recent.outcomes), recent.parts
-        if len(recent.returns) != count or len(parts) not in (0, count) or len({*map(len, parts)}) > 1:
-            raise ValueError("the last flights have outcomes, returns and parts of different numbers")
-        self._recent.extend(zip(recent.outcomes, recent.returns, parts or ((),) * count, strict=True))
-        if count:
-            self._sum_up()
-        self.earned = array_like(self.earned, state["earned"], "earned")
-        if (paid := state["paid"]) is not None:
-            self._paid = array_like(np.empty((len(paid), len(self.earned))), paid, "paid")
 
     def _sum_up(self) -> None:
         outcomes, returns, parts = zip(*self._recent, strict=True)

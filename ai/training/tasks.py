@@ -14,7 +14,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.environment import Doubles, Env, Ints, T, finished
-from ai.files import MOST, array_like, read_as
+from ai.files import read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import Pilot
@@ -22,7 +22,6 @@ from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, engin
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
 from ai.training.config import Config, touchdown_limits
-from ai.training.state import State, rebuilt
 
 VALIDATION_SEED: Final = 1_000_003  # episodes that choose the best checkpoint
 TEST_SEED: Final = 2_000_003  # episodes that have no say in anything, to measure a finished network by
@@ -32,14 +31,6 @@ ANYWHERE_SYMMETRY: Final = Symmetry(
     np.concatenate([MIRROR_FEATURES, NUM_FEATURES + np.arange(len(SURROUNDINGS))]),
     MIRROR_ACTIONS,
 )
-# What changes of landers as they fly; the rest of their snapshot follows from the settings, and from their sites.
-_CHANGED: Final = ("landers", "bodies", "contacts", "gravity", "strictness", "landings")
-# Type and shape of what is known of each contact (`engine.contacts.Contacts`).
-_CONTACTS: Final[dict[str, tuple[Any, ...]]] = {
-    "normal": (float, 2), "points": (float, 2, 2), "depth": (float, 2), "feature": (np.intp, 2), "valid": (bool, 2),
-    "world": (np.intp,), "pair": (np.intp,), "body": (np.intp, 2), "friction": (float,), "restitution": (float,),
-    "impulse": (float, 3), "approach": (float, 3), "age": (np.intp,), "colour": (np.intp,),
-}  # fmt: skip
 
 S = TypeVar("S", bound="Score")
 Trial = Generator[None, None, T]  # takes one decision a turn, and returns what came of them
@@ -91,17 +82,6 @@ class Task(ABC, Generic[S]):
 
     def update_env(self, decisions: int, env: Any) -> None:
         """Bring what changes with experience up to date in an environment that `make_env` made."""
-
-    @abstractmethod
-    def env_state(self, env: Any) -> State:
-        """Return all that an environment of `make_env` goes on from."""
-
-    @abstractmethod
-    def restore_env(self, env: Any, state: State) -> str:
-        """Let a new environment go on from what `env_state` gave; return what of it could not be restored, or "".
-
-        Raises KeyError, TypeError, OverflowError or ValueError for what no environment can have been.
-        """
 
     @abstractmethod
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[S]:
@@ -219,27 +199,6 @@ class LanderTask(Task[Evaluation]):
         """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
         env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
 
-    def env_state(self, env: LanderEnv) -> State:
-        snapshot = env.snapshot()
-        return {
-            "flights": {name: snapshot[name] for name in _CHANGED},
-            "streams": [stream.bit_generator.state for stream in env.streams],
-        }
-
-    def restore_env(self, env: LanderEnv, state: State) -> str:
-        new = env.snapshot()
-        saved, flying = state["flights"], {name: new[name] for name in _CHANGED if name != "contacts"}
-        flights = {name: rebuilt(template, saved[name]) for name, template in flying.items()}
-        flights["contacts"] = _contacts(env, new["contacts"], saved["contacts"])
-        landers = flights["landers"]
-        outside = not np.isin(landers["target"], range(len(env.ground.pads))).all()
-        if outside or not np.isin(landers["outcome"], tuple(Outcome)).all() or not 0 <= flights["landings"] <= MOST:
-            raise ValueError("flights are of other landers, or of none")
-        env.restore(new | flights)
-        for stream, generator in zip(env.streams, state["streams"], strict=True):
-            stream.bit_generator.state = generator
-        return ""
-
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
         """Fly so many flights at once from random spawns, one decision at a time.
 
@@ -270,30 +229,10 @@ class AnywhereTask(LanderTask):
         """Tighten the limits of a touchdown over the schedule, from those that are observed to a share of them."""
         env.strictness = touchdown_limits(self.config, decisions)
 
-    def restore_env(self, env: Any, state: State) -> str:
-        """Let new landers go on from what `env_state` gave, at the same sites."""
-        env.set_sites(array_like(env.settled, state["flights"]["landers"]["settled"], "sites", finite=False))
-        return super().restore_env(env, state)
-
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
         env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
         env.reset()
         return Evaluation.of((yield from flown(pilot, env)))
-
-
-def _contacts(env: LanderEnv, new: State, saved: Any) -> State:
-    """Return what a snapshot remembers of contacts, from a file; raises KeyError, TypeError or ValueError."""
-    gravity, kept, world = rebuilt(new["gravity"], saved["gravity"]), saved["contacts"], env.world
-    if not kept:
-        return {"gravity": gravity, "contacts": {}}
-    count = len(kept["world"])
-    contacts = {
-        name: rebuilt(np.empty((count, *shape), kind), kept[name]) for name, (kind, *shape) in _CONTACTS.items()
-    }
-    most = {"world": env.num_envs, "pair": len(world.pairs), "body": len(world.bodies)}
-    if any((contacts[name] < 0).any() or (contacts[name] >= limit).any() for name, limit in most.items()):
-        raise ValueError("contacts are of none of the landers")
-    return {"gravity": gravity, "contacts": contacts}
 
 
 def _action_chances(config: Config) -> Doubles:

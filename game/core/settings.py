@@ -18,9 +18,7 @@ from game.core import texts
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
 _LARGEST: Final = 1_000_000  # bytes
-# Limits of the player's factors for gravity and for the pace of time.
-GRAVITY_SHARES: Final = (0.6, 1.4)
-PACES: Final = (0.2, 1.0)
+PACES: Final = (0.2, 1.0)  # limits of the player's factor for the pace of time
 TOP_RUNG: Final = 10  # of the ladder of starts: there, flights begin anywhere
 _log = logging.getLogger("tranquility")
 
@@ -47,7 +45,6 @@ class Settings:
     three_pads: bool = False  # three pads among hills, instead of one on a plain
     more_flights: bool = False  # whether all choices of flights are shown, and not four
     show_thinking: bool = False  # whether what the network thinks is shown in flight
-    gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     analogue: bool = True  # whether sticks and triggers give a share of thrust, and not all or none
     toggle_thrust: bool = False  # whether a press switches the main engine on or off, instead of holding it

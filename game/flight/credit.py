@@ -28,7 +28,6 @@ _OWN_HANDS: Final = frozenset({"toggle_thrust"})
 class Rules(Protocol):
     """What a flight is flown as, as far as that decides what counts; see `game.scenes.play.challenge.Challenge`."""
 
-    free: bool
     kept: bool
     bar: str
     alone: bool
@@ -66,9 +65,7 @@ class Credit:
         self.alone, self.pace = rules.alone, 1.0
 
     def prepare(self) -> None:
-        """Apply the player's settings to the next step, and remember what they are; gravity in free flights alone."""
-        if self._rules.free:
-            self._flight.set_gravity(self._settings.gravity)
+        """Apply the player's settings to the next step, and remember what they are."""
         self._flight.steered = self._settings.one_switch
         self._used |= self._chosen
         self.pace = min(self.pace, self._settings.pace)
@@ -100,20 +97,7 @@ class Credit:
             return texts.YOU_SHARE[flight.copilot.mode if word == OTHER else word]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
 
-    # What made it easier, or another flight
-
-    @property
-    def practice(self) -> bool:
-        """Whether the flight is not to be ranked, or will not be after its next step, for its gravity is another."""
-        return bool(self._flight.recording.gravity) or self._gravity != 1
-
-    @property
-    def differs(self) -> str:
-        """Sentence on what differs from normal, now or before; empty if nothing does."""
-        words = [texts.PRACTICE] if self.practice else []
-        if self._gravity != 1:
-            words.append(texts.PRACTICE_GRAVITY.format(percent=round(100 * self._gravity)))
-        return texts.DIAL_JOIN.join(filter(None, [*words, self.assists]))
+    # What made it easier
 
     @property
     def assists(self) -> str:
@@ -145,14 +129,6 @@ class Credit:
         percent = round(100 * slowest)
         return texts.ASSIST_HALF_SPEED if percent == 50 else texts.ASSIST_WORDS["pace"].format(percent=percent)
 
-    @property
-    def _gravity(self) -> float:
-        """Share of normal gravity in the next step; after the flight, in the last."""
-        recording = self._flight.recording
-        if self._rules.free and not self._flight.over:
-            return self._settings.gravity
-        return recording.gravity_at(len(recording.actions))
-
     # What it counts for
 
     @property
@@ -165,8 +141,6 @@ class Credit:
             return "helped"
         if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
             return "handed_over"
-        if self.practice:
-            return "practice"
         return "" if _OWN_HANDS.issuperset(self._named) else "assists"
 
     @property
@@ -176,7 +150,7 @@ class Credit:
 
     @property
     def counts(self) -> bool:
-        """Whether the person flew all of it, without changed gravity or assists that set it apart.
+        """Whether the person flew all of it, without assists that set it apart.
 
         Help that stood by and changed nothing takes nothing away.
         """
@@ -189,9 +163,9 @@ class Credit:
 
     @property
     def notice(self) -> str:
-        """Text that says why it does not count, and what is changed; empty if it counts, or never could."""
-        if self.differs:
-            return self.differs
+        """Text that says why it does not count, and what makes it easier; empty if it counts, or never could."""
+        if self.assists:
+            return self.assists
         if not self._rules.kept:
             return ""
         if self.bar:
@@ -205,8 +179,6 @@ class Credit:
 
     def score(self, best: int) -> str:
         """Return the text for the score of a flight that is over; `best` is the score to beat, 0 for none."""
-        if self.practice:
-            return texts.PRACTICE
         points = landing_score(self._flight.env)
         beaten = self.counts and points > best > 0
         return (texts.SCORE_BEST if beaten else texts.SCORE).format(count=points) if points else ""

@@ -139,23 +139,8 @@ class Flight:
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
-        self.recording.gravity = tuple(change for change in source.gravity if change[0] <= step)
         self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
-        self._pull(self.recording.gravity_at(step))
         self.rest()
-
-    def set_gravity(self, share: float) -> None:
-        """Set gravity to a share of the normal one, from the next step on."""
-        recording, step = self.recording, len(self.recording.actions)
-        if share == recording.gravity_at(step):
-            return
-        recording.gravity = tuple(change for change in recording.gravity if change[0] < step)
-        if share != recording.gravity_at(step):
-            recording.gravity += ((step, share),)
-        self._pull(share)
-
-    def _pull(self, share: float) -> None:
-        self.env.gravity = share * self.env.params.gravity
 
     def rest(self) -> None:
         """Stop interpolation, so that the lander is drawn at its present pose."""

@@ -32,16 +32,12 @@ from ai.flights.recording import LONGEST, STEPS, End, LegAsList, Recording, Shar
 from ai.flights.verification import COURSES
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
-from ai.lander.rules import AREAS
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.core import texts
 
 T = TypeVar("T")
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 5
-# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no shares
-# of thrust, no easing, no descents and no version of the area: it was the first.
-_READS: Final = (1, 2, 3, 4, 5)
+VERSION: Final = 6
 _LARGEST: Final = 2_000_000  # bytes
 LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
@@ -73,7 +69,6 @@ class Entry:
     course: _Name = ""  # name of a mission; empty for a free flight
     medal: _Number = 0  # 3 for gold, 2, 1, and 0 for none
     file: Annotated[str, Sized(LONGEST_NAME), _plain_name] = ""  # for a replay
-    gravity: _Figure = 1.0  # share of the normal one; the farthest from 1 during the flight
     pace: _Figure = 1.0  # slowest time scale during the flight; 1 is normal
     rules: _Number = 0  # version of its mission's rules at the time, from `rules_of`
     barred: _Name = ""  # why it does not count, a key of `texts.NOT_COUNTED`; empty if it does, or nobody noted it yet
@@ -89,11 +84,6 @@ class Entry:
         return self.spawn in RUNGS
 
     @property
-    def practice(self) -> bool:
-        """Whether gravity or pace were changed; such a practice flight is not ranked."""
-        return self.gravity != 1 or self.pace != 1
-
-    @property
     def outdated(self) -> bool:
         """Whether its mission's rules have changed since; then it is not ranked, and its medal is void."""
         return self.rules != rules_of(self.course)
@@ -105,8 +95,6 @@ class Entry:
             return "outdated"
         if self.barred in texts.NOT_COUNTED:
             return self.barred
-        if self.practice:
-            return "practice"
         return "" if self.alone else "unknown"
 
     @property
@@ -151,7 +139,6 @@ class _FlightFile(Start):
     hands: str
     end: End
     entry: Entry
-    area: Annotated[int, OneOf(range(len(AREAS)))] = 0  # the first, before version 5
     shares: str = ""
     leg: LegAsList = None
 
@@ -188,7 +175,7 @@ def from_text(text: str) -> Record:
     """Parse the output of `to_text`; raises ValueError for anything else, which names all that is wrong."""
     values = parse_json(text)
     try:
-        check_header(values, FORMAT, _READS)
+        check_header(values, FORMAT, (VERSION,))
     except ValueError as error:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
     file = read_as(_FlightFile, values)

@@ -90,7 +90,7 @@ class Guard:
         self._wish = KEYS[COAST]  # what was asked for in the decision that is flown now
         self._decision: SharedDecision | None = None
         self._hung = 0  # steps for which the craft has hung although something was asked for
-        self._moment: tuple[object, ...] = ()  # that the futures asked for last belong to
+        self._moment = -1  # steps flown when the futures asked for last begin
         self._flown_by: tuple[object, ...] = ()  # and what they are flown by
 
     @property
@@ -100,7 +100,7 @@ class Guard:
         if copilot is None or copilot.assist == 0 or copilot.mode is not Mode.GUARDIAN or self.ahead.problem:
             if self.push and not self._flight.over:
                 self.bare = self._seconds, "process" if self.ahead.problem else "off"
-            self.push, self._moment = None, ()
+            self.push, self._moment = None, -1
             return False
         return self.push is not None or self._begins
 
@@ -118,7 +118,7 @@ class Guard:
         """Whether a craft that hangs may go: it is known whether the network lands, or that takes too long."""
         if not (self.acts and self._begins) or self.safe or self._hung >= _PATIENCE:
             return True
-        known = self.ahead.known() if self._moment == self._here() else {}
+        known = self.ahead.known() if self._moment == self._here else {}
         return any(future.plan for future in known.values()) or all(key in known for key in KEYS)
 
     def hang(self, held: int) -> None:
@@ -126,7 +126,7 @@ class Guard:
         if not self.acts or not self._begins or self._flight.over:
             return
         self._hung += held != COAST
-        if self._moment != self._here() or self._flown_by != self._flyer:
+        if self._moment != self._here or self._flown_by != self._flyer:
             self._ask((), push_of(held))
         else:
             self.ahead.hint(push_of(held))
@@ -153,7 +153,7 @@ class Guard:
         """Decide what is flown in the next four steps, and let the futures after them be flown meanwhile."""
         flight, flight.alone = self._flight, None
         assert flight.copilot is not None
-        known: Mapping[Push, Future] = self.ahead.known() if self._moment == self._here() else {}
+        known: Mapping[Push, Future] = self.ahead.known() if self._moment == self._here else {}
         stick = self._taps.asked if by is StickHolder.HUMAN else push_of(flight.ask_network())
         held = self.safe
         self._wish = wish = self._wished(nearest(stick, known), known) if by is StickHolder.HUMAN else stick
@@ -164,17 +164,17 @@ class Guard:
         self.decisions += 1
         missing = held and bool(decision.overridden[0]) and wish not in known
         self.saves, self.late = bool(decision.overridden[0]) and not missing, self.late + missing
-        self._note(held, known)
+        self._note(known)
         if by is StickHolder.HUMAN:
             flight.aim(decision.likely[0])
         self._ask((self.push,), stick)
 
-    def _note(self, held: bool, known: Mapping[Push, Future]) -> None:
-        """Note since when no plan is held, and why: one that was `held` is lost only with the rules it was made for."""
+    def _note(self, known: Mapping[Push, Future]) -> None:
+        """Note since when no plan is held, and why."""
         if self.safe:
             self.bare = None
             return
-        since, why = self.bare or (self._seconds, "changed" if held else "looking")
+        since, why = self.bare or (self._seconds, "looking")
         if why == "looking" and self._seconds - since < _SOON and all(key in known for key in KEYS):
             left = float(np.max(self._flight.env.limits.time)) - self._seconds
             why = "none" if left > _SHORT else "time"
@@ -203,7 +203,7 @@ class Guard:
 
     def _ask(self, before: Opening, wish: Push) -> None:
         flight = self._flight
-        self._moment, self._flown_by = self._here(DECISION_STEPS * len(before)), self._flyer
+        self._moment, self._flown_by = self._here + DECISION_STEPS * len(before), self._flyer
         self.ahead.ask(Moment.of(flight.env), before, wish, *self._flyer)
 
     @property
@@ -213,11 +213,10 @@ class Guard:
         assert flight.network is not None
         return decisions_of(flight.copilot.assist), flight.network, flight.route
 
-    def _here(self, later: int = 0) -> tuple[object, ...]:
-        """Return what tells one moment of the flight from another, so many steps later."""
-        env = self._flight.env
-        rules = (id(part) for part in (env.params, env.limits, env.conditions, env.ground))
-        return int(env.steps[0]) + later, float(env.gravity), *rules
+    @property
+    def _here(self) -> int:
+        """The steps flown, which tell one moment of the flight from another."""
+        return int(self._flight.env.steps[0])
 
 
 def nearest(wish: Push, known: Mapping[Push, Future]) -> Push:

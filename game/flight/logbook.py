@@ -44,7 +44,6 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
         human=round(flight.share, 4),
         pads=len(env.ground.pads),
         score=landing_score(env),
-        gravity=max((share for _, share in flight.recording.gravity), key=lambda share: abs(share - 1), default=1.0),
         rules=flight_file.rules_of(more.get("course", "")),
         leg=flight.recording.leg.number if flight.recording.leg else 0,
         **more,
@@ -145,7 +144,7 @@ def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
     def kind(entry: Entry) -> tuple[str, int, int, bool]:
         return entry.course, entry.pads, entry.rules, entry.on_ladder
 
-    own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice and entry.file)
+    own = (entry for entry in entries if entry.landed and entry.alone and entry.file)
     return [entry for _, each in groupby(sorted(own, key=kind), kind) for entry in sorted(each, key=rank)[:most]]
 
 
@@ -171,6 +170,6 @@ def ladder_rung(settings: Settings, entries: Iterable[Entry]) -> int:
 def best_alone(entries: Iterable[Entry]) -> int:
     """Return the highest score of the player's own free flights from anywhere; 0 before any landing."""
     return max(
-        (entry.score for entry in entries if entry.alone and not (entry.course or entry.practice or entry.on_ladder)),
+        (entry.score for entry in entries if entry.alone and not (entry.course or entry.on_ladder)),
         default=0,
     )

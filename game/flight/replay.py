@@ -41,7 +41,6 @@ class ReplayedFlight(Flight):
         if self.at >= len(self._source.actions):
             return COAST, self.flown_by, None
         self.hand = self._source.hands[self.at]
-        self.set_gravity(self._source.gravity_at(self.at))
         if self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0:
             self.aim()  # as the read-outs then were
         return self._source.actions[self.at], self.hand, self._source.shares.get(self.at)
@@ -136,4 +135,4 @@ class FlightReplay:
 
 def flown_elsewhere(recording: Recording) -> bool:
     """Whether a recorded flight was flown where it is not as on the moon."""
-    return bool(recording.gravity) or (recording.mission != "" and STARTS[recording.mission].elsewhere)
+    return recording.mission != "" and STARTS[recording.mission].elsewhere

@@ -109,9 +109,6 @@ def where(flight: SharedFlight) -> str:
         parts.append(day.isoformat())
     if leg and leg.number > 1:
         parts.append(texts.PLACE_TANK.format(seconds=f"{tenths(leg.tank):.1f}"))
-    if recording.gravity:
-        share = max((share for _, share in recording.gravity), key=lambda share: abs(share - 1))
-        parts.append(texts.PRACTICE_GRAVITY.format(percent=round(100 * share)))
     return ", ".join([*parts, *(texts.ASSIST_WORDS[name] for name, on in asdict(recording.easing).items() if on)])
 
 

@@ -51,7 +51,7 @@ COUNTS = [
     texts.MEDAL_NEXT,
     texts.MISSION_GOAL,
 ]
-COUNTS_NOT = [*texts.NOT_COUNTED.values(), texts.PRACTICE, texts.MEDALS[0]]
+COUNTS_NOT = [*texts.NOT_COUNTED.values(), texts.MEDALS[0]]
 
 
 def pattern(text: str) -> re.Pattern[str]:

@@ -44,7 +44,7 @@ class Challenge:
         title, line: its name, for the corner.
         goal: its goal, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
-        free: whether it is a free flight, for which gravity and pads can be chosen.
+        free: whether it is a free flight, for which pads and start can be chosen.
         fixed: whether there is only one start.
         kept: whether its flights are recorded in the logbook.
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
@@ -218,9 +218,7 @@ class Race(_Beside):
         self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        flight = Flight(seed, network, **start_of(self._recording))
-        flight.set_gravity(self._recording.gravity_at(0))
-        return flight
+        return Flight(seed, network, **start_of(self._recording))
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
         return Ghost(ReplayedFlight(self._recording), self._name)
@@ -308,7 +306,7 @@ class FlownMission(Challenge):
         """Return the card with the medal beside the points, and what the next medal asks, or why there is none."""
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
-        if not credit.counts and credit.bar in ("practice", "assists"):
+        if not credit.counts and credit.bar == "assists":
             return card
         earned = texts.MISSION_TOGETHER if credit.together else texts.MEDALS[credit.medal]
         card = replace(card, score=texts.DIAL_JOIN.join(filter(None, (card.score, earned))), ring=credit.together)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from game.core import texts
 from game.core.scene import Pop, Scene
-from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG, Settings
+from game.core.settings import PACES, TOP_RUNG, Settings
 from game.drawing.tokens import INK
 from game.flight.credit import GUARDIAN, HELP, OTHER
 from game.input.controls import Command
@@ -89,8 +89,6 @@ class ChoicesScene(PanelScene):
         index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
         left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
         left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])
-        if self._free:
-            self._share(left, "gravity", texts.CHOICES_GRAVITY, GRAVITY_SHARES, texts.CHOICES_GRAVITY_HELP)
         self._share(right, "pace", texts.PACE, PACES, texts.CHOICES_PACE_HELP)
         key = self.context.controls.word(Command.MODE)
         self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))

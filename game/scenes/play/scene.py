@@ -84,8 +84,6 @@ class PlayScene(Scene):
     def enter(self) -> None:
         """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
-        if self._elsewhere != self._loaded_for:
-            self._change_network()
         self.flown.hang()
         other = self.challenge.eases and eased(self._settings) != self.flight.recording.easing
         if not (self.flown.begun or self.flight.over) and (other or self.challenge.chosen() != self._begun_with):
@@ -294,15 +292,11 @@ class PlayScene(Scene):
     def waiting(self) -> bool:
         return self.flown.waiting
 
-    @property
-    def _elsewhere(self) -> bool:
-        return self.challenge.elsewhere or (self.challenge.free and self._settings.gravity != 1)
-
     def _load_network(self) -> None:
-        context, self._loaded_for = self.context, self._elsewhere
+        context, self._loaded_for = self.context, self.challenge.elsewhere
         settings = context.settings
         shipped, mine = context.models_dir, context.user_dir
-        self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._elsewhere)
+        self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._loaded_for)
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
         elif self.network.stands_in:
@@ -311,7 +305,7 @@ class PlayScene(Scene):
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's own."""
         self._stick.begin()
-        if self._elsewhere != self._loaded_for:
+        if self.challenge.elsewhere != self._loaded_for:
             self._load_network()
         self._begun_with = self.challenge.chosen()
         self.flown = flown = FlownFlight(self.context, seed, self.network, self.challenge, spawn)

@@ -83,11 +83,6 @@ def test_every_step_becomes_one_memory_with_its_own_return(n, slots, seed):
     seen = {}
     for step in range(steps):
         state = np.stack([number[step], number[step]], axis=1).astype(np.float32)
-        if step in (10, 20):  # goes on from what was kept, now or by an earlier version, which wrote rows in a ring
-            kept_rows, ahead = n_step.state(), step // 10 - 1
-            n_step = NStep(n, 0.9)
-            ring = {name: np.roll(rows, ahead, axis=0) for name, rows in kept_rows.items()}
-            n_step.load_state(ring | {"count": ahead}, state)
         made, slot = n_step.add(state, number[step], reward[step], state + 1000, terminal[step], ended[step])
         for k, which in enumerate(slot):
             assert int(made.action[k]) not in seen
@@ -110,14 +105,5 @@ def test_only_successful_episodes_are_passed_on_whole():
     both = np.ones(2, dtype=bool)
     whole = list(episodes.add(cells(4, 2), np.array([0, 1]), both, np.array([False, True])))
     assert [episode.reward.tolist() for episode in whole] == [[1.0, 3.0, 5.0]]
-    assert not episodes.state()  # nothing of them is left for the next ones
     whole = episodes.add(cells(6, 2), np.array([0, 1]), np.array([True, False]), both)
     assert [episode.reward.tolist() for episode in whole] == [[6.0]]
-
-    resumed, state, observation = Episodes(2), episodes.state(), np.zeros((2, 2), dtype=np.float32)
-    resumed.load_state(state, observation)
-    whole = resumed.add(cells(8, 1), np.array([1]), np.array([False, True]), both)
-    assert [episode.reward.tolist() for episode in whole] == [[7.0, 8.0]]
-    for slot in (-1, 2):
-        with pytest.raises(ValueError, match="no slot"):
-            resumed.load_state(state | {"slots": np.array([slot])}, observation)

@@ -74,15 +74,13 @@ runs = st.lists(st.tuples(st.integers(0, 5), st.sampled_from([PERSON, NETWORK]),
 def flights(draw):
     steps = [(action, hand) for action, hand, times in draw(runs) for _ in range(times)]
     actions = [action for action, _ in steps]
-    changes = draw(st.lists(st.integers(0, LONGEST), unique=True, max_size=4).map(sorted))
     leg = draw(st.none() | legs)
     mission = "" if leg else draw(st.sampled_from(["", *MISSIONS]))
     shares = draw(st.dictionaries(st.integers(0, len(steps) - 1), thrusts, max_size=9)) if steps else {}
     shares = {step: each for step, each in shares.items() if each != full(actions[step])}
     recording = Recording(
         draw(st.integers(0, 2**128)), draw(st.sampled_from(list(SPAWNS))), 1 if leg else draw(st.sampled_from([1, 3])),
-        mission, () if leg else tuple((step, draw(st.floats(0.6, 1.4))) for step in changes),
-        draw(st.builds(Easing, st.booleans(), st.booleans())), draw(st.integers(0, len(AREAS) - 1)), leg,
+        mission, draw(st.builds(Easing, st.booleans(), st.booleans())), draw(st.integers(0, len(AREAS) - 1)), leg,
         actions, [hand for _, hand in steps], shares,
     )  # fmt: skip
     numbers = st.integers(-(10**6), 10**6).map(lambda number: number / 10_000)
@@ -143,7 +141,7 @@ def test_what_is_no_flight_is_refused_with_the_reason(subtests):
         (BEGIN + "0" + END, "damaged"),
         (BEFORE, "older"),
         ("tranq-", "older"),
-        ("tranq3-000-over", "newer"),
+        ("tranq4-000-over", "newer"),
         (sealed(b""), "nonsense"),
         (sealed(b"\xff" * 9), "nonsense"),
         (sealed(deflated(b"")), "nonsense"),
@@ -173,13 +171,13 @@ def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
     sound = {"leg": [MOST_LEGS, TANK, True], "easing": {"wider_pads": True, "untimed": True}, "area": len(AREAS) - 1}
     wrong = {
         "seed": (-1, 10**40 + 1, "x", 1.5), "pads": (2, "1"), "spawn": ("nowhere",), "mission": ("nowhere", 3),
-        "area": (len(AREAS), -1), "easing": ({"faster": True}, None), "gravity": ([[5, 0.7], [5, 0.8]], [[0, 99]], [0]),
+        "area": (len(AREAS), -1), "easing": ({"faster": True}, None),
         "leg": ([0, 1.0, False], [MOST_LEGS + 1, 1.0, False], [2, TANK + 0.001, False], [2, 1.0], [2, 1.0, 2]),
         "outcome": ("WON",), "points": (-1, 10**7), "end": ([0, 0], [0, 0, 10**11]), "course": ("elsewhere",),
         "barred": ("x" * 41,), "more": (1,),
     }  # fmt: skip
     assert [refusal(remade(values | {name: value}, inputs)) for name, value in sound.items()] == ["", "", ""]
-    on_a_leg: dict[str, Any] = {"pads": 3, "mission": "fall", "gravity": [[0, 0.7]]}
+    on_a_leg: dict[str, Any] = {"pads": 3, "mission": "fall"}
     changes: list[dict[str, Any]] = [{name: value} for name, values in wrong.items() for value in values]
     changes += [{"leg": [2, 1.0, False], name: value} for name, value in on_a_leg.items()]
     for change in changes:

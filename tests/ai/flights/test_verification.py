@@ -35,7 +35,6 @@ KINDS: dict[str, dict[str, Any]] = {
     "plain": {},
     "three pads": {"pads": 3},
     "a mission": {"mission": "fall"},
-    "another gravity": {"gravity": ((0, 0.8), (60, 1.2))},
     "a leg of a descent": {"leg": LegStart(2, 11.375)},
     "a leg from a flat spot": {"leg": LegStart(10, 4.005, bare=True)},
     "wider pads": {"easing": Easing(wider_pads=True)},
@@ -52,10 +51,8 @@ SHORT = [3, 0, 3, 3] * 9
 def flown(kind, analogue=False):
     """A flight by the scripted pilot, at most half a minute, with a true claim."""
     recording = Recording(11, **{"spawn": "random", **KINDS[kind]})
-    env, pilot, gravity = begun(recording), ScriptedPilot(), dict(recording.gravity)
+    env, pilot = begun(recording), ScriptedPilot()
     while env.outcome[0] == Outcome.FLYING and (step := len(recording.actions)) < 1800:
-        if step in gravity:
-            env.gravity = gravity[step] * env.params.gravity
         action, shares = int(pilot.act(env.observe())[0]), None
         if analogue:  # as a hand on sticks: a little less than all of it
             main, side = ACTION_SHARES[action].tolist()
@@ -146,7 +143,6 @@ def test_a_flight_is_true_from_its_place_and_from_elsewhere_not_whatever_it_earn
     here = (
         placed(),
         placed(pads=3),
-        placed(gravity=((0, 0.5),)),
         placed(easing=Easing(wider_pads=True)),
         placed(spawn="rung_3"),
         placed(DAILY, pads=3),
@@ -162,12 +158,10 @@ def test_a_flight_is_true_from_its_place_and_from_elsewhere_not_whatever_it_earn
         placed(DAILY, pads=3, seed=0),  # before the first day
         placed(DAILY, pads=3, seed=10**9),  # after the last
         placed(DAILY, pads=3, spawn="rung_1"),
-        placed(DAILY, pads=3, gravity=((0, 0.7),)),
         placed(DAILY, mission="fall"),
         placed(DAILY, leg=LegStart()),
         placed("wind"),
         placed("wind", mission="fall"),
-        placed("wind", mission="wind", gravity=((9, 0.7),)),
         placed(mission="wind"),
         placed(DESCENT),
         placed(DESCENT, mission="fall"),
@@ -175,7 +169,6 @@ def test_a_flight_is_true_from_its_place_and_from_elsewhere_not_whatever_it_earn
         placed(DESCENT, leg=LegStart(1, bare=True)),
         placed(DESCENT, leg=LegStart(2, 4.9)),  # a landing brings more
         placed(DESCENT, leg=LegStart(no_spot, 6.0, bare=True)),
-        placed(DESCENT, leg=LegStart(), gravity=((0, 0.7),)),
         placed(DESCENT, leg=LegStart(), easing=Easing(wider_pads=True)),
         placed("tank", leg=LegStart()),
         placed(spawn="rung_3", pads=3),

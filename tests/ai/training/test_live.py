@@ -1,5 +1,5 @@
 import pickle
-from dataclasses import fields, replace
+from dataclasses import fields
 from itertools import chain, islice, pairwise
 
 import numpy as np
@@ -289,32 +289,21 @@ def test_there_must_be_a_run_to_go_on_with_and_it_must_be_of_landers(begin, tmp_
         next(begin(gym_config("CartPole-v1")))
 
 
-def by_kind(entries):
-    """Entries of a history by kind, without what the clock says."""
-    alike = [replace(each, seconds=0.0) if isinstance(each, Point | Validation) else each for each in entries]
-    return [[repr(each) for each in alike if isinstance(each, kind)] for kind in (Point, Validation, SettingChange)]
-
-
-def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(LanderTask, "evaluate_every", 1600)
-    monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    straight, run = begin(seed=3), begin(seed=3)
-    whole, pieces = messages_in(straight, 160), messages_in(run, 103)  # in the midst of validation flights
-    for turns in (1, 30, 26):
-        pieces += run.send(("save", tmp_path / "run"))  # which flies what is left of them
-        run = begin(resume=tmp_path / "run")
-        assert of(RunStarted, next(run))[0].lost == ""
-        pieces += messages_in(run, turns)
-    assert by_kind(pieces) == by_kind(whole)
-    checkpoints = [[each.decisions for each in of(Checkpoint, messages)] for messages in (pieces, whole)]
-    assert checkpoints[0] == checkpoints[1]
-    assert len(of(Validation, whole)) == 2
-    for each, folder in ((straight, "straight"), (run, "pieces")):
-        each.send(("save", tmp_path / folder))
-    alike = [resume(Training, tmp_path / folder) for folder in ("straight", "pieces")]
-    assert np.array_equal(alike[0].agent.online.values, alike[1].agent.online.values)
-    assert np.array_equal(*(each.best_agent().network.values for each in alike))
-    assert alike[0].statistics.mean_return == alike[1].statistics.mean_return
+def test_a_run_that_goes_on_goes_on_with_its_curves_and_learns_at_once(begin, tmp_path):
+    run = begin(seed=3)
+    messages_in(run, 103)
+    run.send(("save", tmp_path / "run"))
+    again = begin(resume=tmp_path / "run")
+    (started,) = of(RunStarted, next(again))
+    assert (started.lost, started.decisions) == ("", 102 * 32)
+    points = of(Point, messages_in(again, 40))
+    assert points[0].decisions == 103 * 32
+    assert np.isfinite([points[0].loss, points[0].mean_q]).all(), "its memory is there"
+    assert np.isnan(points[0].success), "none of its new flights has ended"
+    again.send(("save", tmp_path / "again"))
+    history = History.read(tmp_path / "again")
+    assert (np.diff(history["decisions"]) > 0).all()
+    assert history["decisions"][-1] == points[-1].decisions
 
 
 def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):

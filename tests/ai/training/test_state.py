@@ -1,17 +1,19 @@
-"""A run that goes on from its state is the run that never stopped, bit for bit; and what becomes of damaged states."""
+"""A run that goes on has learnt what it had learnt, remembers it, and lands as well; what becomes of damaged states."""
 
+import json
+import shutil
 from importlib.util import find_spec
 
 import numpy as np
 import pytest
 
-from ai.files import move_state, remove_state, state_folder
+from ai.files import state_folder
 from ai.nn import ModelFormatError
 from ai.training import state as states
 from ai.training.config import ANYWHERE, PRESETS, Config, gym_config
 from ai.training.loop import Training
-from ai.training.run import Keeper, resume, save
-from ai.training.tasks import LanderTask
+from ai.training.run import Keeper, Limit, resume, save
+from ai.training.tasks import TEST_SEED, LanderTask, evaluate
 
 SMALL = PRESETS["modern"].changed(
     hidden=(8,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=500, num_envs=8, spawn="near"
@@ -29,7 +31,6 @@ RUNS = {
 }
 if find_spec("gymnasium"):
     RUNS["gymnasium"] = gym_config("CartPole-v1").changed(learning_starts=64, num_envs=3, hidden=(8,))
-TURNS = 70
 
 
 def begun(config):
@@ -42,164 +43,114 @@ def on(training, turns):
     return training
 
 
-def gone_on(training, folder):
-    save(training, folder)
-    resumed = resume(Training, folder, env=training.config.env)
-    resumed.evaluate_every, resumed.validation_episodes = 0, 4
-    return resumed
+def resumed(folder):
+    training = resume(Training, folder)
+    training.evaluate_every, training.validation_episodes = 0, 4
+    return training
 
 
-def flat(value, path=""):
-    """All leaves of a tree by their places."""
-    if isinstance(value, dict):
-        return {place: leaf for name in value for place, leaf in flat(value[name], f"{path}/{name}").items()}
-    return {path: value.tobytes() if isinstance(value, np.ndarray) else value}
+def known(training):
+    """What a run has learnt and remembers, each as bytes or as JSON has it, by name."""
+    agent = training.agent
+    arrays = {"online": agent.online.values, "target": agent.target.values, **agent.optimizer.state()}
+    for name, buffer in training.buffers.items():
+        arrays |= {f"{name}.{part}": array for part, array in buffer.state(buffer.capacity).items()}
+    counts = {"decisions": agent.decisions, "steps": agent.gradient_steps, "episodes": training.episodes}
+    counts |= {"landings": training.env.landings, "seconds": round(training.seconds, 3)}
+    chance = {"rng": agent.rng.bit_generator.state, "scale": agent.normalizer and agent.normalizer.to_json()}
+    return {name: np.asarray(array).tobytes() for name, array in arrays.items()} | counts | chance
 
 
-def differing(one, other):
-    """Names of what differs between two runs, memories included, but for the time that they took."""
-    found = []
-    for part in (Training.state, lambda run: {name: buffer.size for name, buffer in run.buffers.items()}):
-        first, second = (flat(part(run)) for run in (one, other))
-        found += [place for place in first | second if place != "/seconds" and first.get(place) != second.get(place)]
-    for name, buffer in one.buffers.items():
-        rows = (buffer.start + np.arange(buffer.size)) % buffer.capacity
-        again = other.buffers[name]
-        alike = [np.array_equal(*pair) for pair in zip(buffer.at(rows), again.at(rows), strict=True)]
-        found += [name] * (not all(alike) or (buffer.start, buffer.added) != (again.start, again.added))
-    return found
-
-
-def test_stopped_and_gone_on_with_at_any_point_it_is_the_straight_run(tmp_path, subtests, monkeypatch):
-    monkeypatch.setattr(states, "BLOCK", 64)
+def test_a_run_that_goes_on_knows_what_it_knew_and_begins_new_flights(tmp_path, subtests):
     for name, config in RUNS.items():
         with subtests.test(name):
-            straight, pieces, at = on(begun(config), TURNS), begun(config), 0
-            for stop in (1, 40, 41, TURNS):
-                pieces, at = gone_on(on(pieces, stop - at), tmp_path / name), stop
-                assert pieces.lost == ""
-            assert straight.agent.gradient_steps > 0
-            assert differing(straight, pieces) == []
-            assert differing(on(straight, 3), on(pieces, 3)) == [], "and so they go on"
+            training = on(begun(config), 70)
+            assert training.agent.gradient_steps > 0
+            save(training, tmp_path / name)
+            one, other = resumed(tmp_path / name), resumed(tmp_path / name)
+            assert one.lost == ""
+            assert known(one) == known(training)
+            assert not np.array_equal(one.observation, training.observation), "its flights are new"
+            assert known(on(one, 5)) == known(on(other, 5)), "and follow from the seed and the moment"
+            assert one.agent.gradient_steps > training.agent.gradient_steps, "it learns at once"
 
 
-def test_the_measurement_at_an_end_changes_nothing_of_a_run_that_goes_on(tmp_path, monkeypatch):
+def test_flights_of_a_run_that_goes_on_are_neither_those_of_its_beginning_nor_the_same_each_time(tmp_path):
+    first, training, begins = begun(SMALL), begun(SMALL), []
+    for _ in range(3):
+        begins.append(training.observation)
+        save(on(training, 5), tmp_path / "run")
+        training = resumed(tmp_path / "run")
+    assert np.array_equal(begins[0], first.observation)
+    assert len({begin.tobytes() for begin in begins}) == 3
+
+
+def test_the_best_network_and_its_score_are_those_of_before(tmp_path, monkeypatch):
     monkeypatch.setattr(LanderTask, "test_episodes", 4)
-    straight, stopped = on(begun(SMALL), 60), on(begun(SMALL), 30)
-    save(stopped, tmp_path / "run", final=True)
-    assert stopped.best is not None
-    resumed = resume(Training, tmp_path / "run")
-    assert resumed.best is None
-    resumed.evaluate_every = 0
-    assert differing(straight, on(resumed, 30)) == []
-
-
-def test_a_validation_under_way_goes_on_with_its_run_and_is_of_the_same_network(tmp_path, monkeypatch):
-    monkeypatch.setattr(LanderTask, "validation_episodes", 4)
-    straight, stopped = begun(SMALL), begun(SMALL)
-    for training in (straight, stopped):
-        training.evaluate_every, training.validation_pace = 160, 1
-    on(straight, 25)
-    resumed = gone_on(on(stopped, 23), tmp_path / "run")
-    resumed.validation_pace = 1
-    on(resumed, 2)
-    scores = [training.validate() for training in (straight, resumed)]
-    assert scores[0] is not None
-    assert scores[0] == scores[1]
-    assert differing(straight, resumed) == []
-    assert gone_on(resumed, tmp_path / "run").evaluated == straight.evaluated == 160
+    training = on(begun(SMALL), 30)
+    save(training, tmp_path / "run", final=True)
+    assert training.best is not None
+    again = resumed(tmp_path / "run")
+    assert again.best == training.best
+    assert np.array_equal(again.best_agent().online.values, training.best_agent().network.values)
 
 
 def files(folder):
     return {path.name: path for path in state_folder(folder).iterdir()}
 
 
-def test_transitions_lie_in_blocks_that_are_written_once_and_go_when_they_are_forgotten(tmp_path, monkeypatch):
-    monkeypatch.setattr(states, "BLOCK", 64)
-    training, held = begun(SMALL), {}
-    for _ in range(12):
-        save(on(training, 10), tmp_path / "run")
-        blocks = {name: path.stat().st_ino for name, path in files(tmp_path / "run").items() if name.endswith(".npy")}
-        assert all(held.get(name, number) == number for name, number in blocks.items()), "none is written again"
-        assert len(blocks) <= SMALL.replay_size // 64 + 1
-        held |= blocks
-    assert len(held) == training.agent.replay.added // 64
-    assert len(files(tmp_path / "run")) == len(blocks) + 1, "and one state"
-    save(training, tmp_path / "copy")
-    assert differing(training, resume(Training, tmp_path / "copy")) == []
-
-
-def test_of_what_is_too_large_the_newest_is_kept_and_it_is_said(tmp_path, monkeypatch, subtests):
-    monkeypatch.setattr(states, "BLOCK", 16)
-    for prioritised, most in ((False, 30_000), (True, 38_000)):
+def test_of_what_is_too_large_the_newest_is_kept(tmp_path, monkeypatch, subtests):
+    monkeypatch.setattr(states, "MOST", 20_000)
+    monkeypatch.setattr("ai.training.loop.MOST", 20_000)
+    for prioritised in (False, True):
         with subtests.test(prioritised=prioritised):
-            monkeypatch.setattr(states, "MOST", most)
             training = on(begun(SMALL.changed(prioritised=prioritised)), 60)
             save(training, tmp_path / "run")
-            resumed = resume(Training, tmp_path / "run")
-            assert "too large" in resumed.lost
-            kept = resumed.agent.replay
-            assert 0 < len(kept) < len(training.agent.replay)
-            paths = files(tmp_path / "run").values()
-            assert sum(path.stat().st_size for path in paths if path.suffix == ".npy") < most
-            ours, theirs = (newest(buffer, 20) for buffer in (training.agent.replay, kept))
-            assert all(np.array_equal(*pair) for pair in zip(ours, theirs, strict=True))
-            on(resumed, 3)
+            again, before = resumed(tmp_path / "run"), training.agent.replay.state(500)
+            kept = again.agent.replay.state(500)
+            count = len(kept["action"])
+            assert 0 < count < len(before["action"])
+            assert all(np.array_equal(before[name][-count:], part) for name, part in kept.items())
+            assert sum(path.stat().st_size for path in files(tmp_path / "run").values()) < 30_000
+            on(again, 3)
 
 
-def newest(buffer, count):
-    """Rewards of the newest transitions, and their priorities, if they have any."""
-    rows = (buffer.start + np.arange(len(buffer) - count, len(buffer))) % buffer.capacity
-    tree = getattr(buffer, "tree", None)
-    return [buffer.at(rows).reward, *([tree.leaves[rows]] if tree else [])]
-
-
-def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
-    monkeypatch.setattr(states, "BLOCK", 64)
+def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path):
     save(on(begun(SMALL.changed(prioritised=True)), 50), tmp_path / "run")
     rng, refused = np.random.default_rng(0), list[str]()
-    for path in files(tmp_path / "run").values():
-        whole = path.read_bytes()
-        for number in range(6):
-            damaged = bytearray(whole)
-            if number % 2:
-                del damaged[int(rng.integers(len(whole))) :]
-            else:
-                at = int(rng.integers(len(whole)))
-                damaged[at : at + 8] = rng.bytes(8)
-            path.write_bytes(damaged)
-            try:  # some numbers are as good as others
-                resume(Training, tmp_path / "run")
-            except ModelFormatError as error:
-                refused.append(str(error))
-        path.unlink()
-        if path.suffix == ".npy":
-            with pytest.raises(ModelFormatError, match=path.name.split(".")[0]):
-                resume(Training, tmp_path / "run")
-        path.write_bytes(whole)
+    (path,) = files(tmp_path / "run").values()
+    whole = path.read_bytes()
+    for number in range(30):
+        damaged = bytearray(whole)
+        at = int(rng.integers(len(whole)))
+        if number % 2:
+            del damaged[at:]
+        else:
+            damaged[at : at + 8] = rng.bytes(8)
+        path.write_bytes(damaged)
+        try:  # some numbers are as good as others
+            resume(Training, tmp_path / "run")
+        except ModelFormatError as error:
+            refused.append(str(error))
     assert len(refused) > 15
     assert [problem for problem in refused if "without this folder" not in problem] == []
-    remove_state(tmp_path / "run")
+    shutil.rmtree(state_folder(tmp_path / "run"))
     assert "empty memory" in resume(Training, tmp_path / "run").lost
 
 
 def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
-    training = on(begun(SMALL.changed(success_pass=True)), 30)
-    while not training.state()["env"]["flights"]["contacts"]["contacts"]:
-        training.advance()
+    training = on(begun(SMALL.changed(prioritised=True)), 30)
     changes = {
-        "held": lambda state: state["held"].fill(6),
-        "contacts": lambda state: state["env"]["flights"]["contacts"]["contacts"]["world"].fill(10**9),
-        "outcome": lambda state: state["env"]["flights"]["landers"]["outcome"].fill(9),
-        "target": lambda state: state["env"]["flights"]["landers"]["target"].fill(3),
-        "streams": lambda state: state["env"]["streams"].pop(),
-        "stream": lambda state: state["env"]["streams"][0].update(bit_generator="MT19937"),
-        "target network": lambda state: state["agent"]["target"].fill(np.nan),
-        "optimizer": lambda state: state["agent"]["optimizer"].update(steps=np.array(-1)),
-        "n-step": lambda state: state["agent"]["n_step"].update(_ages=np.zeros(3)),
-        "counts": lambda state: state["agent"].update(gradient_steps=-1),
-        "best": lambda state: state.update(best={"score": {}, "values": training.agent.online.values}),
-        "paid": lambda state: state["statistics"].update(paid=np.full((2, 3), 1.0)),
+        "action": lambda state: state["replay.action"].fill(6),
+        "reward": lambda state: state["replay.reward"].fill(np.nan),
+        "features": lambda state: state.update({"replay.state": state["replay.next_state"][:, :3]}),
+        "count": lambda state: state.update({"replay.steps": state["replay.steps"][:3]}),
+        "more than it holds": lambda state: state.update(
+            {name: np.repeat(part, 4, axis=0) for name, part in state.items() if name != "rng"}
+        ),
+        "priorities": lambda state: state["replay.priorities"].fill(0.0),
+        "generator": lambda state: state["rng"].update(bit_generator="MT19937"),
+        "no generator": lambda state: state.update(rng=None),
     }
     for name, change in changes.items():
         with subtests.test(name), pytest.MonkeyPatch.context() as patch:
@@ -211,37 +162,66 @@ def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
                 resume(Training, tmp_path / "run")
 
 
+def test_a_state_of_another_version_is_refused_by_name_and_left(tmp_path):
+    save(on(begun(SMALL), 20), tmp_path / "run")
+    (path,) = files(tmp_path / "run").values()
+    for said in ({}, {"version": 1}, {"version": 3, "more": 4}, []):
+        np.savez(path, described=np.frombuffer(json.dumps(said).encode(), np.uint8))
+        held = path.read_bytes()
+        with pytest.raises(ModelFormatError, match=rf"{path.name} was saved by another version, and is left as it is"):
+            resume(Training, tmp_path / "run")
+        assert path.read_bytes() == held
+
+
 def test_a_process_that_is_killed_between_two_files_leaves_a_run_of_one_moment(tmp_path, monkeypatch):
     training = on(begun(SMALL), 20)
     keeper = Keeper(training, tmp_path / "run")
     assert keeper.save(tmp_path / "run").problem == ""
-    before = on(resume(Training, tmp_path / "run"), 0)
+    before = known(resume(Training, tmp_path / "run"))
 
     def killed(*_):
         raise OSError(5, "killed")
 
-    for moment in ("network", "state"):
+    for moment in ("ai.training.loop.write_agent", "ai.training.run.write_state"):
         on(training, 5)
         with monkeypatch.context() as patch:
-            if moment == "network":
-                patch.setattr("ai.training.loop.write_agent", killed)
-            else:
-                patch.setattr(states, "_archive", killed)
+            patch.setattr(moment, killed)
             assert keeper.save(tmp_path / "run").problem == "killed"
-        assert differing(before, resume(Training, tmp_path / "run")) == []
+        assert known(resume(Training, tmp_path / "run")) == before
     assert keeper.save(tmp_path / "run").problem == ""
-    assert differing(training, resume(Training, tmp_path / "run")) == []
+    assert known(resume(Training, tmp_path / "run")) == known(training)
+    assert len(files(tmp_path / "run")) == 1
     keeper.end()
 
 
-def test_a_state_of_other_networks_is_another_runs_and_a_run_that_has_diverged_leaves_none(tmp_path):
-    training, other = on(begun(SMALL), 20), on(Training(SMALL, 6, evaluate_every=0), 20)
-    save(training, tmp_path / "run")
-    save(other, tmp_path / "other")
-    move_state(tmp_path / "other", tmp_path / "run")
-    assert "empty memory" in resume(Training, tmp_path / "run").lost
+def test_a_run_that_has_diverged_leaves_no_state(tmp_path):
+    training = on(begun(SMALL), 20)
     save(training, tmp_path / "run")
     assert state_folder(tmp_path / "run").exists()
     training.restore_best()
     save(training, tmp_path / "run")
     assert not state_folder(tmp_path / "run").exists()
+
+
+DECISIONS = 120_000
+
+
+def landed(seed, stops, folder):
+    """Share of 2,000 test starts that the best network lands of a run with stops on its way."""
+    training = Training(PRESETS["modern"], seed, evaluate_every=20_000)
+    for stop in (*stops, DECISIONS):
+        for _ in Limit(moment=stop).run(training):
+            pass
+        if stop != DECISIONS:
+            save(training, folder)
+            training = resume(Training, folder)
+            training.evaluate_every = 20_000
+    return evaluate(training.best_agent(), 2000, TEST_SEED).success
+
+
+@pytest.mark.slow
+def test_runs_stopped_at_a_third_and_at_two_thirds_land_as_well_as_straight_ones(tmp_path):
+    straight = [landed(seed, (), tmp_path / "run") for seed in range(10)]
+    stopped = [landed(seed, (DECISIONS // 3, 2 * DECISIONS // 3), tmp_path / "run") for seed in range(10)]
+    print(f"straight: {straight}\nstopped: {stopped}")
+    assert min(stopped) >= min(straight)

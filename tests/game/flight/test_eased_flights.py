@@ -1,4 +1,4 @@
-"""Flights under other rules, flown again bit for bit: shares of thrust, wider pads, no time limit, gravity and pace."""
+"""Flights under other rules, flown again bit for bit: shares of thrust, wider pads, no time limit and pace."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,7 +8,7 @@ import pygame
 import pytest
 
 from ai.flights.recording import STEPS, UNHURRIED, WIDER, Easing, full
-from ai.lander.environment import PARAMS, Outcome
+from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
@@ -19,7 +19,6 @@ from game.flight.logbook import Records, best, best_alone, describe
 from game.flight.replay import ReplayedFlight
 from game.input.analogue import pushed
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -126,85 +125,28 @@ def test_a_slow_hand_with_one_switch_lands():
 Open = Callable[..., Driver]
 
 
-def fly(changes: dict[int, float], steps: int = 3600) -> Flight:
+def test_only_flights_alone_and_from_anywhere_are_among_the_best():
     flight = Flight(3, ScriptedPilot())
     flight.hand_over()
-    for step in range(steps):
-        if flight.over:
-            break
-        if step in changes:
-            flight.set_gravity(changes[step])
+    while not flight.over:
         flight.step(0)
-    return flight
-
-
-def test_all_of_it_is_no_change_bit_for_bit_and_two_changes_between_two_steps_are_one():
-    flight = Flight(3)
-    for shares, kept in (((0.6, 0.7, 1.4, 0.9), ((0, 0.9),)), ((0.7, 1.0), ())):
-        for share in shares:
-            flight.set_gravity(share)
-        assert flight.recording.gravity == kept, shares
-    plain, explicit = fly({}), fly({0: 1.0, 7: 1.0})
-    assert explicit.recording.gravity == ()
-    assert np.array_equal(plain.poses.now, explicit.poses.now)
-
-
-def test_practice_is_not_among_the_best():
-    entry = replace(describe(fly({}), 1.0), alone=True, file="a.json", score=90)
-    easy, slow = replace(entry, gravity=0.8, score=100), replace(entry, pace=0.7, score=99)
-    assert (easy.practice, slow.practice, entry.practice) == (True, True, False)
-    assert best([easy, slow, entry]) == [entry]
-    others = [replace(entry, score=95, **kind) for kind in ({"course": "night"}, {"alone": False}, {"spawn": "rung_3"})]
-    assert best_alone([easy, slow, entry, *others]) == 90
+    entry = replace(describe(flight, 1.0), alone=True, file="a.json", score=90)
+    slow = replace(entry, alone=False, barred="assists", score=99)
+    assert best([slow, entry]) == [entry]
+    others = [replace(entry, score=95, **kind) for kind in ({"course": "night"}, {"spawn": "rung_3"})]
+    assert best_alone([slow, entry, *others]) == 90
     assert best_alone([]) == 0
 
 
-def test_gravity_is_changed_in_flight_at_once_and_said(open_game: Open, context: Context):
-    context.settings.tutored = context.settings.more_flights = True
-    context.settings_file.save(context.settings)
-    game = open_game(PlayScene, 3)
-    play = game.top
-    game.frames(2)
-    game.key(pygame.K_UP)
-    game.frames(20)
-    assert play.flight.recording.gravity == ()
-    game.keys(pygame.K_c)
-    scene = game.top
-    assert isinstance(scene, ChoicesScene)
-    while scene.form.focused.label != texts.CHOICES_GRAVITY:
-        game.key(pygame.K_DOWN)
-    game.keys(pygame.K_LEFT, pygame.K_LEFT, pygame.K_c)
-    game.key(pygame.K_UP)  # it hangs until it is touched
-    game.frames(2)
-    [(step, share)] = play.flight.recording.gravity
-    assert (step > 10, share) == (True, pytest.approx(0.8))
-    assert play.flight.env.gravity == pytest.approx(0.8 * PARAMS.gravity)
-    assert "80" in play.credit.differs
-    play.flight.env.place(np.ones(1, bool), np.array([[0.0, 4.0, 0.0, -6.0, 0.0, 0.0]]))
-    while not play.flight.over:
-        game.frames(5)
-    game.frames(5)
-    [entry] = Records(context.user_dir).entries()
-    assert (entry.practice, entry.alone, entry.gravity) == (True, False, pytest.approx(0.8))
-    context.settings.gravity = 1.2  # for the flights to come
-    game.frames(5)
-    assert play.flight.recording.gravity == ((step, share),)
-
-
-def test_a_mission_keeps_its_own_gravity_and_offers_but_help_and_the_pace(open_game: Open, context: Context):
-    context.settings.gravity, context.settings.more_flights = 0.6, True
+def test_a_mission_offers_but_help_and_the_pace(open_game: Open, context: Context):
+    context.settings.more_flights = True
     context.settings_file.save(context.settings)
     game = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"]))
     game.frames(2)
-    game.key(pygame.K_UP)
-    game.frames(10)
-    assert len(game.top.flight.recording.actions) > 5
-    assert game.top.flight.recording.gravity == ()
-    assert not game.top.credit.practice
     game.key(pygame.K_c)
     labels = [widget.label for widget in game.top.form.widgets]
     assert texts.PACE in labels
-    assert texts.CHOICES_GRAVITY not in labels
+    assert texts.CHOICES_PADS not in labels
 
 
 def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(open_game: Open, context: Context):
@@ -221,7 +163,7 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(ope
     while not play.ending.card:
         driver.skip()
     [entry] = Records(context.user_dir).entries()
-    assert (entry.pace, entry.practice, entry.alone, entry.medal) == (0.5, True, False, 0)
+    assert (entry.pace, entry.alone, entry.medal) == (0.5, False, 0)
     assert entry.bar == "assists"
     assert texts.ASSIST_HALF_SPEED in play.ending.card.assists
     again = ReplayedFlight(Records(context.user_dir).read(entry.file).recording)

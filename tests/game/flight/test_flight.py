@@ -205,7 +205,7 @@ def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
 
 def test_a_forecast_is_flown_under_the_gravity_of_the_flight():
     flight, forecast = Flight(7, ScriptedPilot()), Forecast(ScriptedPilot())
-    flight.set_gravity(1.4)
+    flight.env.gravity *= 1.4
     while not len(forecast.path):
         forecast.follow(flight.env)
     flight.hand_over()

@@ -108,17 +108,6 @@ def test_a_hand_over_and_another_network_leave_the_plan(agent):
     assert land(flight).outcome is Outcome.LANDED
 
 
-def test_a_change_of_gravity_voids_the_plan_and_another_is_found(agent):
-    flight = fly(guarded(agent), lambda _: (2, None), most=8)
-    flight.set_gravity(0.9)
-    fly(flight, lambda _: (2, None), most=12)
-    assert not flight.guard.safe
-    assert flight.guard.bare == (pytest.approx(8 / 60), "changed")
-    assert fly(flight, lambda _: (2, None), most=60).guard.safe
-    assert flight.guard.bare is None
-    assert land(flight).outcome is Outcome.LANDED
-
-
 def test_a_craft_hangs_until_a_plan_is_found_but_not_for_long(agent):
     for known, ready in (
         (None, True),

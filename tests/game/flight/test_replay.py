@@ -36,16 +36,6 @@ def state(flight_replay: FlightReplay) -> tuple:
             int(env.main_steps[0]), flight_replay.flight.share)  # fmt: skip
 
 
-def changing_gravity() -> Flight:
-    flight = Flight(3, ScriptedPilot())
-    flight.hand_over()
-    for step in range(200):
-        if share := {0: 0.8, 50: 1.2, 51: 1.0, 90: 0.6}.get(step):
-            flight.set_gravity(share)
-        flight.step(0)
-    return flight
-
-
 def analogue() -> Flight:
     flight, rng = Flight(3, pads=3, easing=Easing(wider_pads=True)), np.random.default_rng(1)
     for _ in range(200):
@@ -54,9 +44,7 @@ def analogue() -> Flight:
 
 
 def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(context: Context):
-    for name, flight in {
-        "by hand": scripted(by_hand=40), "gravity": changing_gravity(), "analogue": analogue()
-    }.items():  # fmt: skip
+    for name, flight in {"by hand": scripted(by_hand=40), "analogue": analogue()}.items():
         flight_replay = FlightReplay(kept(context, flight))
         assert flight_replay.record.recording == flight.recording, name
         seen, last = [state(flight_replay)], flight_replay.length

@@ -158,7 +158,7 @@ def test_everything_of_a_day_can_be_copied_and_watched(open_game: Open, context:
     driver.press_on(texts.DAYS_COPY)
     assert clipboard[-1] == first_attempt.line
     driver.press_on(texts.CODE_COPY)
-    assert clipboard[-1].startswith("tranq2-")
+    assert clipboard[-1].startswith("tranq3-")
     driver.press_on(texts.LOGBOOK_WATCH)
     driver.frames(2)
     assert isinstance(driver.top, ReplayScene)

@@ -77,7 +77,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, c
     path = tmp_path / "strange.bin"
     refused = texts.CODE_REFUSED
     for content, why in (
-        (b"tranq2-000-over", refused["damaged"]), (b"tranq2-000", refused["cut"]),
+        (b"tranq3-000-over", refused["damaged"]), (b"tranq3-000", refused["cut"]),
         (b"tranq-000-over", refused["older"]), (b"hello", refused["none"]), (b"\xff\xfe", refused["none"]),
         (b"x" * 2_000_000, ""),
     ):  # fmt: skip
@@ -86,7 +86,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, c
         assert driver.top_name == "MenuScene"
         assert driver.said.startswith("strange.bin: ")
         assert why in driver.said
-    paste(driver, "tranq2-000", clipboard)
+    paste(driver, "tranq3-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=refused["cut"])
 
 

@@ -234,18 +234,6 @@ def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open,
         assert fly_out(flight).outcome is Outcome.LANDED
 
 
-def test_under_another_gravity_it_flies_and_back_on_the_moon_it_does_not(open_game: Open):
-    driver = open_game(PlayScene, 3)
-    assert play(driver).network.name == "modern"
-    for gravity, name in ((2.0, networks.ANYWHERE), (1.0, "modern")):
-        driver.app.context.settings.gravity = gravity
-        driver.key(pygame.K_ESCAPE)
-        driver.key(pygame.K_ESCAPE)
-        assert play(driver).network.name == name
-        assert play(driver).flight.network is play(driver).network.policy
-        driver.frames(30)
-
-
 @pytest.mark.parametrize("damage", ["missing", "torn", "another"])
 def test_where_it_cannot_be_read_the_usual_network_flies_and_that_is_said(
     open_game: Open, context: Context, copied: Path, damage: str

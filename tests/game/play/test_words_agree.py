@@ -72,7 +72,6 @@ SCENES: dict[str, Callable[[Context], PlayScene]] = {
 }
 FREE: dict[str, dict[str, object]] = {
     "three pads": {"three_pads": True},
-    "light": {"gravity": 0.8},
     "slow": {"pace": 0.5},
     "guarded": {"assist": 0.7, "copilot": "guardian"},
     "guarded, three pads": {"assist": 0.7, "copilot": "guardian", "three_pads": True},
@@ -117,7 +116,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     assert who_and_when(entry).endswith(both if who == "both" else who)
     if outcome is Outcome.LANDED:
         assert entry.alone == (False not in page.counts)
-        assert not entry.bar or any(barred(entry) in word or texts.PRACTICE in word for word in page.words), page.words
+        assert not entry.bar or any(barred(entry) in word for word in page.words), page.words
         won = [medal for medal in (1, 2, 3) if any(word.endswith(texts.MEDALS[medal]) for word in page.words)]
         assert won == [entry.medal] * bool(entry.medal)
         assert texts.SCORE_BEST.format(count=entry.score) not in page.words or entry.alone
@@ -247,7 +246,7 @@ def test_a_change_after_the_end_changes_nothing_of_what_was_flown(open_game: Ope
     reading.driver.key(pygame.K_UP)
     end(reading.driver, Outcome.LANDED)
     before = reading.check(70)
-    for name, value in {"assist": 1.0, "gravity": 0.6, "pace": 0.5}.items():
+    for name, value in {"assist": 1.0, "pace": 0.5}.items():
         setattr(reading.driver.app.context.settings, name, value)
     after = reading.check(4)
     assert (after.flew, after.counts) == (before.flew, before.counts) == (set(), set()), "nobody but you"

@@ -54,7 +54,7 @@ def keys(*pressed: int, frames: int = 0) -> Callable[[Driver], None]:
 def listed(context: Context) -> None:
     """Fill every list, the logbook also with an entry of which much is to be said."""
     stock(context)
-    fields = {"course": "ferry", "medal": 3, "gravity": 0.8, "outcome": "OUT_OF_BOUNDS", "human": 0.5}
+    fields = {"course": "ferry", "medal": 3, "outcome": "OUT_OF_BOUNDS", "human": 0.5}
     usual = Records(context.user_dir).entries()[0]
     entries = [replace(usual, **fields), usual, replace(usual, spawn="rung_3"), replace(usual, course="descent", leg=2)]
     with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
@@ -95,5 +95,5 @@ STOPS = [
     Stop("Play", "card", crashed),
     Stop("mission", "card", crashed),
     Stop("Play", "shared", shared, {"assist": 0.6, "three_pads": True}),
-    Stop("Play", "practice", shared, {"gravity": 0.8, "pace": 0.7}),
+    Stop("Play", "practice", shared, {"pace": 0.7}),
 ]
