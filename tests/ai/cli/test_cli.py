@@ -216,7 +216,7 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
 
 def test_weights_of_the_reward_that_are_not_named_stay_the_presets():
     for preset in PRESETS.values():
-        changed = configured(preset, ['reward_weights={"time": -0.3}', 'weights={"feet": 2.0}'])
+        changed = configured(preset, ['reward_weights={"time": -0.3}', 'reward_weights={"feet": 2.0}'])
         assert changed.reward_weights == replace(preset.reward_weights, time=-0.3, feet=2.0)
 
 
