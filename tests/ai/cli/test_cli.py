@@ -16,7 +16,8 @@ from ai.cli.command_line import configured, stoppable
 from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.messages import Saved
-from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
+from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask, evaluate
+from game.core.assets import MODELS_DIR
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -29,6 +30,17 @@ SMALL = [
 @pytest.fixture(autouse=True)
 def _measured_quickly(monkeypatch):
     monkeypatch.setattr(LanderTask, "test_episodes", 4)
+
+
+def test_evaluate_flies_as_the_network_was_trained_and_prints_an_interval_around_the_share(capsys):
+    model = MODELS_DIR / "lander" / "modern"
+    assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3", "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)
+    low, high = values.pop("success_interval")
+    assert low < values["success"] <= high
+    assert values == evaluate(DeepQAgent.load(model), 10, 3).to_json()
+    assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3"]) == 0
+    assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
 
 
 def test_train_evaluate_resume(tmp_path, capsys):
@@ -228,7 +240,7 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
 
 def test_weights_of_the_reward_that_are_not_named_stay_the_presets():
     for preset in PRESETS.values():
-        changed = configured(preset, ['reward_weights={"time": -0.3}', 'weights={"feet": 2.0}'])
+        changed = configured(preset, ['reward_weights={"time": -0.3}', 'reward_weights={"feet": 2.0}'])
         assert changed.reward_weights == replace(preset.reward_weights, time=-0.3, feet=2.0)
 
 
