@@ -178,7 +178,7 @@ def from_text(text: str) -> Record:
         check_header(values, FORMAT, (VERSION,))
     except ValueError as error:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
-    file = read_as(_FlightFile, values, strict=True)
+    file = read_as(_FlightFile, values)
     if file.entry.course not in COURSES:
         raise ValueError(texts.FLIGHT_MISSION.format(name=brief(file.entry.course, 40)))
     actions = [int(word) for word in _unpacked(file.actions)]

@@ -117,7 +117,7 @@ def done_with_own(context: Context) -> dict[str, bool]:
     own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
     pilots = []
     with suppress(OSError):
-        pilots = own_pilots.own(Shelf(context.user_dir).measured())
+        pilots = Shelf(context.user_dir).measured()
     return {
         "train": bool(runs),
         "land": any(run.success for run in (*runs, library.rescued()) if run),
