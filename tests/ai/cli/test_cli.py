@@ -16,7 +16,8 @@ from ai.cli.command_line import configured, stoppable
 from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.messages import Saved
-from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
+from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask, evaluate
+from game.core.assets import MODELS_DIR
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -29,6 +30,17 @@ SMALL = [
 @pytest.fixture(autouse=True)
 def _measured_quickly(monkeypatch):
     monkeypatch.setattr(LanderTask, "test_episodes", 4)
+
+
+def test_evaluate_flies_as_the_network_was_trained_and_prints_an_interval_around_the_share(capsys):
+    model = MODELS_DIR / "lander" / "modern"
+    assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3", "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)
+    low, high = values.pop("success_interval")
+    assert low < values["success"] <= high
+    assert values == evaluate(DeepQAgent.load(model), 10, 3).to_json()
+    assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3"]) == 0
+    assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
 
 
 def test_train_evaluate_resume(tmp_path, capsys):
