@@ -12,7 +12,7 @@ import pytest
 
 from ai.files import read_json
 from ai.training.config import Config, in_force
-from ai.training.experiments import SABOTAGES, VERDICTS, experiment_of
+from ai.training.experiments import SABOTAGES, VERDICTS, sabotaged
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
@@ -31,8 +31,6 @@ from tests.support.recordings import growing, recorded
 from tests.support.small import LANDERS as SMALL
 from tests.support.written import words_written
 
-TIMES = texts.LAB_TIMES.format(factor=100.0)
-
 
 def knobs(driver: Driver) -> list[str]:
     driver.frames(1)
@@ -41,7 +39,8 @@ def knobs(driver: Driver) -> list[str]:
 
 def press_try(driver: Driver) -> None:
     driver.press_on(texts.TRAIN_EXPERIMENTS)
-    driver.press_on(TIMES)
+    driver.press_on(texts.SABOTAGES["rate_times_100"][0])
+    driver.press_on(texts.LAB_SKIP)
 
 
 def split(driver: Driver) -> None:
@@ -188,7 +187,7 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
     press(texts.LAB_GUESSES["never"])
     assert scene.laboratory.page == "result"
     assert laboratory.chosen.guess == "never"
-    assert scene.run.twin.config == experiment_of(SMALL, "no_replay").applied(SMALL)
+    assert scene.run.twin.config == sabotaged(SMALL, "no_replay")
     train.wait(lambda: len(scene.run.twin.history) >= 2 and len(scene.run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
@@ -205,7 +204,7 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
 def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
     train: Driver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    train.top.laboratory.chosen = Chosen(experiment_of(SMALL, "no_replay"), "No replay", "never")
+    train.top.laboratory.chosen = Chosen("no_replay", "never")
     laboratory, healthy = train.top.laboratory, recorded("modern healthy")
     run = SimpleNamespace(config=healthy.config, history=History(), twin=None)
     run.twin = SimpleNamespace(config=healthy.config, history=History(), problem="")
@@ -278,7 +277,6 @@ def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> 
 def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     for came in (None, *VERDICTS):
         assert bool(why(came, "no_replay")) == (came not in (None, "as_well")), came
-        assert not why(came, "")
     assert why("later", "no_replay", recovered=True) == texts.LAB_RECOVERED != why("later", "no_replay")
     assert not why("as_well", "no_replay", recovered=True)
     assert has_recovered(["91", "92"])
