@@ -306,7 +306,7 @@ NOT_AT = {
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
     "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
-    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
+    "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
     "DigitTrainingScene",
 }  # fmt: skip
 IN_FLIGHT = {
