@@ -1,6 +1,7 @@
 """What the process of a player's file makes of it, asked without a process."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +9,6 @@ import pytest
 from ai.lander.environment import LanderEnv
 from ai.lander.rewards import REWARDS, Situation
 from ai.pilots.child import ACT, LONGEST, PAY, load, problem, read_block, write_block
-from ai.pilots.shelf import TEMPLATES
 
 PATH = "/pilots/pilot.py"
 OBSERVATIONS = np.zeros((3, 9), np.float32)
@@ -65,8 +65,8 @@ def test_act_and_act_many_answer_row_by_row_and_may_change_what_they_get():
     assert one == many == bytes([1, 4, 1])
 
 
-def test_the_template_of_a_pay_is_the_usual_pay():
-    pay, _ = load(PAY, PATH, (TEMPLATES / "pay.py").read_text())
+def test_the_pay_of_the_examples_is_the_usual_pay():
+    pay, _ = load(PAY, PATH, (Path(__file__).parents[3] / "examples" / "pay_as_usual.py").read_text())
     env, rng = LanderEnv(64, 3), np.random.default_rng(4)
     env.reset()
     ended = 0
