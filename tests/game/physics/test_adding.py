@@ -41,7 +41,7 @@ def test_an_exhibit_with_one_slider_is_added(
         (texts.EXHIBITS, "fall", FALL),
         (texts.QUANTITIES, "height", ("Height, h", "{value:.1f} m")),
     ):
-        monkeypatch.setitem(table, key, value)  # type: ignore[arg-type]
+        monkeypatch.setitem(table, key, value)
     driver = open_game(PhysicsScene, "fall")
     driver.widget("Height, h").set(8.0)
     driver.frames(300)

@@ -128,7 +128,7 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
 
 def test_a_hand_that_pulls_is_part_of_the_step():
     exhibit = EXHIBITS["stack"](EARTH)
-    body = exhibit.ball
+    body = exhibit.bodies[-1]  # the ball
     grip = Grip(body, body.position[0].copy())
     grip.target = np.array((3.0, 3.0))
     record = StepRecord(exhibit, grip)
