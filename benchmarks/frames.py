@@ -72,7 +72,7 @@ from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
 from game.scenes.train.scene import TrainScene
-from game.scenes.watch.scene import COUNTS, WatchScene
+from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import landscape
@@ -155,12 +155,10 @@ def rows() -> dict[str, Row]:
             lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
-        **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
-        "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
-        "watch, map of scores": Row(
-            lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
-        ),
-        "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch": Row(lambda context: WatchScene(context, seed=4)),
+        "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
+        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
+        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))

@@ -17,7 +17,7 @@ STARTING = {
 }  # fmt: skip
 # Calls that a module makes all the same, and why no file of a stranger's is behind them.
 OPENED = {
-    "ai.files.reading": ({"open", "os.open", "archive.open", "zipfile.ZipFile"}, "the door"),
+    "ai.files.reading": ({"Path(path).open", "np.load", "zipfile.ZipFile"}, "the door"),
     "ai.files.writing": ({"os.open", "temporary.open", "path.open"}, "writes, appends, and waits for the disk"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
     "ai.pilots.child": ({"os.open"}, "the null device"),

@@ -130,11 +130,6 @@ class Worker:
         self._paused = False
         self._order("resume")
 
-    def step(self) -> None:
-        """Take one turn while paused."""
-        if self._paused:
-            self._order("step")
-
     def set_pace(self, per_second: float | None) -> None:
         """Limit the generator to `per_second` turns a second; None for no limit."""
         self._order("pace", per_second)

@@ -112,7 +112,7 @@ class OwnChapter(Chapter):
 
         files = []
         with suppress(OSError):
-            files = own_pilots.own(self._shelf.measured())
+            files = self._shelf.measured()
         pilot = max(files, key=lambda each: each.landed, default=None)
         good = pilot is not None and pilot.landed >= own_pilots.GOOD
         return {

@@ -1,6 +1,7 @@
 """What the process of a player's file makes of it, asked without a process."""
 
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,6 @@ import pytest
 from ai.lander.environment import LanderEnv
 from ai.lander.rewards import REWARDS, Situation
 from ai.pilots.child import ACT, PAY, load, problem
-from ai.pilots.shelf import TEMPLATES
 
 PATH = "/pilots/pilot.py"
 OBSERVATIONS = np.zeros((3, 9), np.float32)
@@ -81,8 +81,8 @@ def test_act_and_act_many_answer_row_by_row_and_may_change_what_they_get():
     assert one.tolist() == many.tolist() == [1, 4, 1]
 
 
-def test_the_template_of_a_pay_is_the_usual_pay():
-    pay, _ = load(PAY, PATH, (TEMPLATES / "pay.py").read_text())
+def test_the_pay_of_the_examples_is_the_usual_pay():
+    pay, _ = load(PAY, PATH, (Path(__file__).parents[3] / "examples" / "pay_as_usual.py").read_text())
     env, rng = LanderEnv(64, 3), np.random.default_rng(4)
     env.reset()
     ended = 0
