@@ -54,7 +54,6 @@ from game.scenes import scene_of
 from game.scenes.ahead import load
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
-from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.learn.path import PATH
@@ -73,7 +72,7 @@ from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
 from game.scenes.train.scene import TrainScene
-from game.scenes.watch.scene import COUNTS, WatchScene
+from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import landscape
@@ -90,9 +89,9 @@ LIMITS = {"1280x720": (8.0, 50.0), "1920x1080": (8.0, 50.0), "2560x1440": (12.0,
 COVERED = 30  # frames for which a scene below another has been on the screen
 SEVEN = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
 FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
-SHARED: dict[str, Any] = {"assist": 0.6}
-GUARDED: dict[str, Any] = {"assist": 0.4, "copilot": "guardian"}
-PADS: dict[str, Any] = {**SHARED, "copilot": "guardian", "three_pads": True}
+SHARED: dict[str, Any] = {"help": "guide"}
+GUARDED: dict[str, Any] = {"help": "guard"}
+PADS: dict[str, Any] = {**SHARED, "three_pads": True}
 
 
 @dataclass(frozen=True)
@@ -131,7 +130,7 @@ def rows() -> dict[str, Row]:
 
     special = {
         "WatchScene", "PhysicsScene", "PhysicsStepScene", "ChapterScene", "mission", "descent", "LessonScene",
-        "QuizScene", "DreamScene", "DigitInsideScene", "WhyNotScene", "Play", "swarm",
+        "DreamScene", "DigitInsideScene", "WhyNotScene", "Play", "swarm",
     }  # fmt: skip
     others = {name for name in ALL if name not in special and not name.startswith("chapter")}
     return {
@@ -156,12 +155,10 @@ def rows() -> dict[str, Row]:
             lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
-        **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
-        "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
-        "watch, map of scores": Row(
-            lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
-        ),
-        "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch": Row(lambda context: WatchScene(context, seed=4)),
+        "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
+        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
+        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
@@ -185,7 +182,6 @@ def rows() -> dict[str, Row]:
             )
             for name in ("modern", "classic")
         },
-        "quiz": Row(QuizScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
         "dream": Row(DreamScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
         "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
         "inside, classic": of_seven(DigitInsideScene, (pygame.K_n,), "classic"),

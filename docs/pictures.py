@@ -63,7 +63,7 @@ def lesson(context: Context) -> LessonScene:
 PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...] = (
     ("menu", MenuScene, {}, 200),
     ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
-    ("watch", partial(WatchScene, count=64, seed=3), {}, 260),
+    ("watch", partial(WatchScene, seed=3, many=True), {}, 260),
     ("map", partial(WatchScene, seed=4), {30: pygame.K_m}, 110),
     ("descent", partial(PlayScene, seed=4, challenge=Descent()), dict.fromkeys(range(5, 160, HELD), pygame.K_UP), 100),
     ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
@@ -81,7 +81,7 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
 SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {
-    "cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True),
+    "cockpit": Settings(help="guide", three_pads=True),
 }
 
 MOVING = "flight"

@@ -17,12 +17,11 @@ STARTING = {
 }  # fmt: skip
 # Calls that a module makes all the same, and why no file of a stranger's is behind them.
 OPENED = {
-    "ai.files.reading": ({"open", "os.open", "archive.open", "zipfile.ZipFile"}, "the door"),
+    "ai.files.reading": ({"Path(path).open", "np.load", "zipfile.ZipFile"}, "the door"),
     "ai.files.writing": ({"os.open", "temporary.open", "path.open"}, "writes, appends, and waits for the disk"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
     "ai.pilots.child": ({"os.open"}, "the null device"),
-    "ai.sweep.search": ({"self._path.open"}, "writes Optuna's journal, which nothing here reads"),
-    "ai.sweep.trial": ({"path.read_bytes"}, "its own code for a hash"),
+    "ai.sweep.trial": ({"path.read_bytes"}, "what it has just written"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
     "game.core.catalogue": ({"path.read_bytes"}, "comes with the program"),
     "game.core.collection": ({"shutil.copytree"}, "of plain files alone, links as links"),
@@ -36,7 +35,6 @@ OPENED = {
 }
 STARTED = {
     "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
-    "ai.pilots.process": ({"subprocess.Popen"}, "that process: Python itself"),
     "ai.pilots.shelf": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),

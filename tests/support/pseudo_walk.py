@@ -41,7 +41,6 @@ from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.base import INSIDE
 from game.shell.app import App
 from game.training.record import put_beside
 from game.training.run import TrainingRun
@@ -52,8 +51,7 @@ from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
-from tests.support.networks import on_a_link
-from tests.support.pen import SEVEN, pad_of, stroke
+from tests.support.pen import pad_of, stroke
 from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
@@ -80,26 +78,6 @@ def rewound(driver: Driver) -> None:
     driver.frames(20)
     rewind.go_to(run.history["decisions"][-1] / 2)
     driver.frames(5)
-
-
-def edited(driver: Driver) -> None:
-    """Silence a unit of the large network, and pick a link."""
-    trained(driver)
-    driver.top.open(INSIDE)
-    driver.frames(3)
-    driver.click(driver.top.inside.view.centres[1][2])
-    driver.frames(2)
-    driver.press_on(texts.EDIT_SILENCE)
-    driver.frames(3)
-    driver.click(on_a_link(driver.top.inside.view))
-    driver.frames(3)
-
-
-def edited_and_back(driver: Driver) -> None:
-    """Silence a unit, and go back to the swarm."""
-    edited(driver)
-    driver.key(pygame.K_ESCAPE)
-    driver.frames(3)
 
 
 def taught_to_read(driver: Driver) -> None:
@@ -146,20 +124,6 @@ def drawn(driver: Driver) -> None:
     driver.frames(30)
 
 
-def handed_in(driver: Driver) -> None:
-    """Draw a seven in the quiz, and have it read."""
-    stroke(driver, SEVEN)
-    driver.key(pygame.K_RETURN)
-    driver.frames(5)
-
-
-def answered(driver: Driver) -> None:
-    """Say what somebody else wrote."""
-    handed_in(driver)
-    driver.keys(pygame.K_RETURN, pygame.K_3)
-    driver.frames(5)
-
-
 def frame(number: int) -> Happens:
     """Return what shows a frame of a lesson."""
 
@@ -204,23 +168,9 @@ def tried(*labels: str, steps: int) -> Happens:
     return try_it
 
 
-def switched(driver: Driver) -> None:
-    """Draw a seven, and switch the last step of its preprocessing off."""
-    drawn(driver)
-    driver.press_on(texts.DIGITS_SEES)
-    driver.press_on(texts.DIGITS_STAGES["centre"])
-    driver.frames(2)
-
-
 def inside(steps: int, driver: Driver) -> None:
     """Follow a unit some steps on."""
     driver.keys(*[pygame.K_n] * steps)
-    driver.frames(5)
-
-
-def in_code(driver: Driver) -> None:
-    """Look at the code of a convolution."""
-    driver.key(pygame.K_c)
     driver.frames(5)
 
 
@@ -262,21 +212,15 @@ STATES = [
     Stop("TrainScene", "training", trained),
     Stop("TrainScene", "an experiment", experimented),
     Stop("TrainScene", "an earlier moment", rewound),
-    Stop("TrainScene", "an edited network", edited),
-    Stop("TrainScene", "its swarm", edited_and_back),
     Stop("DigitTrainingScene", "training to read", taught_to_read),
     *(Stop("LessonScene", f"frame {number + 1}", frame(number)) for number in range(7)),
     Stop("PhysicsScene", "a law", measured),
     Stop("PhysicsStepScene", "a step", taken_apart),
     *(Stop("a digit's lesson", f"frame {number + 1}", frame(number)) for number in range(7)),
     Stop("DigitsScene", "a digit", drawn),
-    Stop("DigitsScene", "a switch", switched),
     *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
     Stop("modern inside", "inside", partial(inside, 3)),
-    Stop("modern inside", "code", in_code),
     Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
-    Stop("QuizScene", "read", handed_in),
-    Stop("QuizScene", "answered", answered),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
         for key, labels, steps in (
@@ -285,7 +229,7 @@ STATES = [
             ("downhill", [], 340),
             ("backwards", [*[texts.LEARN_BACKWARDS_BACK] * 4, texts.LEARN_BACKWARDS_STEP], 2),
             ("pay", [texts.LEARN_PAY_TRAIN], 850),
-            ("moment", [texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO], 480),
+            ("choice", [], 480),
             ("target", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),
             ("memory", [texts.LEARN_MEMORY_START], SHORT_RUN + 5),
             ("daring", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),

@@ -75,7 +75,6 @@ STOPS = [
         for name in ("LogbookScene", "MissionsScene", "NetworksScene")
     ),
     Stop("NetworksScene", "naming", keys(pygame.K_F2)),
-    Stop("QuizScene", "read", keys(pygame.K_3)),
     Stop("BindingsScene", "binding", keys(pygame.K_RETURN)),
     Stop("WatchScene", "stopped", keys(pygame.K_SPACE)),
     Stop("WatchScene", "touched", keys(pygame.K_SPACE, pygame.K_q, pygame.K_m)),
@@ -88,12 +87,11 @@ STOPS = [
     Stop("descent", "in flight", in_flight),
     Stop("daily", "in flight", in_flight),
     Stop("tutorial", "in flight", in_flight),
-    Stop("Play", "guarded", in_flight, {"assist": 0.04, "copilot": "guardian"}),
+    Stop("Play", "guarded", in_flight, {"help": "guard"}),
     Stop("Play", "thinking", in_flight, {"show_thinking": True}),
     Stop("FlightPauseScene", "of a flight", keys(frames=90)),
-    Stop("ChoicesScene", "more", settings={"more_flights": True}),
     Stop("Play", "card", crashed),
     Stop("mission", "card", crashed),
-    Stop("Play", "shared", shared, {"assist": 0.6, "three_pads": True}),
+    Stop("Play", "shared", shared, {"help": "guide", "three_pads": True}),
     Stop("Play", "practice", shared, {"pace": 0.7}),
 ]
