@@ -35,7 +35,6 @@ OPENED = {
 }
 STARTED = {
     "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
-    "ai.pilots.process": ({"subprocess.Popen"}, "that process: Python itself"),
     "ai.pilots.shelf": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),

@@ -229,7 +229,7 @@ STATES = [
             ("downhill", [], 340),
             ("backwards", [*[texts.LEARN_BACKWARDS_BACK] * 4, texts.LEARN_BACKWARDS_STEP], 2),
             ("pay", [texts.LEARN_PAY_TRAIN], 850),
-            ("moment", [texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO], 480),
+            ("choice", [], 480),
             ("target", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),
             ("memory", [texts.LEARN_MEMORY_START], SHORT_RUN + 5),
             ("daring", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),
