@@ -16,7 +16,6 @@ import platform
 import statistics
 import time
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
@@ -24,10 +23,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import numpy as np
 
 from ai.lander.rewards import RewardWeights
-from ai.sweep.shards import results
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import VALIDATION_SEED, evaluate
+from benchmarks.pool import results
 
 EVERY = 25_000
 FLIGHTS = 300
@@ -106,7 +105,7 @@ def main() -> None:
     print("| | 95 % after | 99 % after | mean of the curve | at the end | worst seed | CPU s |")
     print("|---|---|---|---|---|---|---|")
     asked = [(name, seed, arguments.decisions) for name in arguments.only for seed in range(arguments.seeds)]
-    done = dict(zip(asked, results([partial(trained, one) for one in asked], arguments.workers), strict=True))
+    done = dict(zip(asked, results(trained, asked, arguments.workers), strict=True))
     for name in arguments.only:
         runs = [done[name, seed, arguments.decisions] for seed in range(arguments.seeds)]
         curves = [landed for landed, _ in runs]

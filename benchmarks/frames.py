@@ -54,7 +54,6 @@ from game.scenes import scene_of
 from game.scenes.ahead import load
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
-from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.learn.path import PATH
@@ -131,7 +130,7 @@ def rows() -> dict[str, Row]:
 
     special = {
         "WatchScene", "PhysicsScene", "PhysicsStepScene", "ChapterScene", "mission", "descent", "LessonScene",
-        "QuizScene", "DreamScene", "DigitInsideScene", "WhyNotScene", "Play", "swarm",
+        "DreamScene", "DigitInsideScene", "WhyNotScene", "Play", "swarm",
     }  # fmt: skip
     others = {name for name in ALL if name not in special and not name.startswith("chapter")}
     return {
@@ -187,7 +186,6 @@ def rows() -> dict[str, Row]:
             )
             for name in ("modern", "classic")
         },
-        "quiz": Row(QuizScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
         "dream": Row(DreamScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
         "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
         "inside, classic": of_seven(DigitInsideScene, (pygame.K_n,), "classic"),

@@ -36,10 +36,10 @@ from ai.cli.command_line import configured
 from ai.environment import Floats, Ints
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA
-from ai.sweep.shards import results
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, evaluate
+from benchmarks.pool import results
 
 VALIDATION_FLIGHTS = 500  # as a run flies them
 STOPPING_FLIGHTS = 2000  # more: of 500, a network that lands 98.5 % lands 99 % once in four looks
@@ -201,7 +201,7 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     )
     print(f"| | {heads} | of test at the end, each seed |\n|---|---|---|---|")
     asked = [(seed, config, arguments.seconds) for seed in range(arguments.seeds)]
-    runs = results([partial(raced, one) for one in asked], arguments.workers)
+    runs = results(raced, asked, arguments.workers)
     mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:
         print('\nto compare with stable-baselines3: pip install -e ".[bench]"')

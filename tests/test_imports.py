@@ -23,8 +23,7 @@ LATE = {
 # What is there for the users of an extra alone.
 EXTRA = {
     "ai.training.gym_lander": {"gymnasium"},
-    "ai.sweep.driver": {"ray"},
-    "ai.sweep.search": {"optuna"},
+    "ai.sweep.driver": {"optuna", "ray"},
 }
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (

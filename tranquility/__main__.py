@@ -99,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     screen.add_argument("--windowed", dest="full_screen", action="store_false", default=None)
     screen.add_argument("--fullscreen", dest="full_screen", action="store_true", default=None)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for module in ("game.cli", "ai.cli.train", "ai.cli.evaluate", "ai.cli.copilot", "ai.cli.sweep"):
+    for module in ("game.cli", "ai.cli.train", "ai.cli.evaluate", "ai.cli.sweep"):
         if find_spec(module) is not None:
             import_module(module).add_commands(commands)
     return parser

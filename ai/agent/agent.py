@@ -122,7 +122,7 @@ class DeepQAgent:
         `epsilon` is one number, or (n,) to let some slots explore more than others.
         """
         actions = self.decide(observation, held=held).action
-        if np.any(epsilon):
+        if epsilon.any() if isinstance(epsilon, np.ndarray) else epsilon:
             actions = actions.copy()
             explore = self.rng.random(len(actions)) < epsilon
             actions[explore] = self.rng.choice(self.num_actions, int(explore.sum()), p=self.action_chances)

@@ -27,13 +27,13 @@ class AgentConfig(Knobs):
                        "learning", low=1, high=20)
     batch_size: int = knob(256, "Batch size: memories in each learning step.", "learning", low=8, high=1024, live=True)
     gradient_steps: int = knob(12, "Gradient steps after each decision of all landers.",
-                               "learning", low=1, high=32, live=True, formerly="updates")
+                               "learning", low=1, high=32, live=True)
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
     gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient allowed.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
     schedule_decisions: int = knob(600_000, "Decisions in which learning rate and τ fall and touchdown limits tighten.",
-                                   "learning", low=1_000, high=10_000_000, log=True, formerly="horizon")
+                                   "learning", low=1_000, high=10_000_000, log=True)
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
                                    offers=((16, 16), (32, 32), (64, 64), (128, 128), (256, 256), (64, 64, 64)))
@@ -48,7 +48,7 @@ class AgentConfig(Knobs):
     replay_size: int = knob(1_000_000, "Replay buffer size, in memories.", "memory", low=100, high=1_000_000, log=True)
     replay_prune: int = knob(1, "Oldest memories dropped when the buffer is full.", "memory", low=1, high=100_000)
     learning_starts: int = knob(5_000, "Memories collected before learning.",
-                                "memory", low=1, high=50_000, formerly="warm_up")
+                                "memory", low=1, high=50_000)
     prioritised: bool = knob(False, "Prioritised replay: by size of error.", "memory")
     priority_exponent: float = knob(0.6, "Priority exponent: 0 is uniform, 1 in proportion to error.",
                                     "memory", low=0.0, high=1.0, needs="prioritised")
@@ -64,9 +64,9 @@ class AgentConfig(Knobs):
     double: bool = knob(True, "Double Q-learning: one network chooses, the other judges.",
                         "target", live=True, needs="target_judges")
     target_update_interval: int = knob(1, "Gradient steps between two updates of the target network.",
-                                       "target", low=1, high=10_000, log=True, live=True, formerly="target_every")
+                                       "target", low=1, high=10_000, log=True, live=True)
     tau: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
-                      "target", low=0.0001, high=1.0, log=True, live=True, formerly="target_rate")
+                      "target", low=0.0001, high=1.0, log=True, live=True)
     final_tau: float = knob(1.0, "Target update rate after the schedule, as a share of τ.",
                             "target", low=0.01, high=1.0, log=True, live=True)
     fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)

@@ -39,11 +39,8 @@ VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
-_OLD: Final = FolderKind("tranquility safety critic", (), {"network": NETWORK})  # earlier versions kept one beside it
-_PARTS: Final = {"online": NETWORK, "target": NETWORK, "guardian": _OLD}
-_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), _PARTS)
+_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
 KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
-_FORMERLY: Final = "train_count"  # the name of `gradient_steps` in older files
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
@@ -100,13 +97,13 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
 def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) -> A:
     """Make an agent as the file of settings and counts describes it."""
     described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, (VERSION,))
-    settings = AgentConfig.renamed(described["config"])
+    settings = dict(described["config"])
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
     features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
     agent = make(features, actions, AgentConfig.from_json(settings))
     agent.run_settings = run_settings
     agent.decisions = count_of(described["decisions"])
-    agent.gradient_steps = count_of(described["gradient_steps" if "gradient_steps" in described else _FORMERLY])
+    agent.gradient_steps = count_of(described["gradient_steps"])
     if agent.normalizer:
         agent.normalizer.load(described["scale"])
     return agent

@@ -27,7 +27,6 @@ LONGEST: Final = 400  # letters of a printed line: text from a file or an argume
 SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
 EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
-WORKERS: Final = (1, 1000)
 _REQUESTS: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # signals that ask a program to end
 
 # Errors of reading a path or settings that the user has named. A loop of links and JSON that is nested too deeply
@@ -136,7 +135,6 @@ def configured(preset: Settings, given: list[str]) -> Settings:
     values = preset.to_json()
     for change in given:
         name, equals, text = change.partition("=")
-        name = preset.name_now(name)
         if not equals or name not in values:
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
         try:

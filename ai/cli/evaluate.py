@@ -13,7 +13,6 @@ from ai.cli import command_line as cli
 if TYPE_CHECKING:
     from ai.training.tasks import Score
 
-FLIGHTS: Final = (1, 10**8)
 _SHARES: Final = ("success", "crash", "out_of_bounds", "time_out")
 
 
@@ -25,7 +24,6 @@ def add_commands(commands: Any) -> None:
     land.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
     land.add_argument("--seed", type=int, default=0)
     land.add_argument("--spawn", help="random or hard (default: random)")
-    land.add_argument("--workers", type=int, metavar="N", help="processes at once (default: 1)")
     flown = land.add_mutually_exclusive_group(required=True)
     flown.add_argument("--pilot", type=Path, metavar="FILE", help="a pilot of your own in place of a network")
     for command, run in ((land, _evaluate), (read, _evaluate_digits)):
@@ -40,7 +38,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.lander.spawns import SPAWNS
     from ai.training.statistics import wilson
 
-    cli.check_ranges(arguments, episodes=FLIGHTS, seed=cli.SEEDS, workers=cli.WORKERS)
+    cli.check_ranges(arguments, episodes=cli.EPISODES, seed=cli.SEEDS)
     if arguments.spawn not in (None, *SPAWNS):
         raise ValueError(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
     score = _own(arguments) if arguments.pilot else _score(arguments)
@@ -62,11 +60,10 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> Score:
-    """Measure a network, the lander's in shards; raises ValueError for options that do not fit its environment."""
-    from ai.sweep.shards import results, shards
+    """Measure a network; raises ValueError for options that do not fit its environment."""
     from ai.training.config import LANDER, load_agent
     from ai.training.loop import task_of
-    from ai.training.tasks import Evaluation
+    from ai.training.tasks import evaluate
 
     agent, config = load_agent(arguments.model, env=arguments.env)
     if arguments.env not in (None, config.env):
@@ -76,12 +73,7 @@ def _score(arguments: argparse.Namespace) -> Score:
         raise ValueError(f"the network in {arguments.model} is not made for {config.env}")
     episodes = arguments.episodes or task.test_episodes
     if config.env == LANDER:
-        parts = shards(arguments.model, episodes, arguments.seed, arguments.spawn or "random")
-        with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
-            sums = results(parts, arguments.workers or 1, bar.update)
-        return Evaluation.of(sum(sums[1:], sums[0]))
-    if arguments.workers is not None or episodes > cli.EPISODES[1]:
-        raise ValueError(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
+        return evaluate(agent, episodes, arguments.seed, arguments.spawn or "random", config.frame_skip)
     if arguments.spawn is not None:
         raise ValueError(f"--spawn is for the lander on the moon; this network is for {config.env}")
     score: Score = task.evaluate(agent, episodes, arguments.seed)
@@ -93,9 +85,8 @@ def _own(arguments: argparse.Namespace) -> Score:
     from ai.pilots.own import MeasuredPilot
     from ai.training.tasks import LanderTask, evaluate
 
-    if arguments.env is not None or arguments.workers is not None:
-        raise ValueError("--env and --workers are for networks")
-    cli.check_ranges(arguments, episodes=cli.EPISODES)
+    if arguments.env is not None:
+        raise ValueError("--env is for networks")
     with closing(MeasuredPilot(arguments.pilot)) as pilot:
         episodes = arguments.episodes or LanderTask.test_episodes
         return evaluate(pilot, episodes, arguments.seed, arguments.spawn or "random")

@@ -1,10 +1,8 @@
-"""The commands of sweeps: run a study of many trials, tell what a study found."""
+"""The command of sweeps: run a study of many trials, and print what it found."""
 
 from __future__ import annotations
 
 import argparse
-import json
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,15 +12,15 @@ if TYPE_CHECKING:
     from ai.sweep.plan import Plan
     from ai.sweep.study import Study
 
-_RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
+_SEEDS: Final = (1, 1000)  # of a trial
 _BUDGET: Final = (1, 10**12)
 # Options of a plan, which a study keeps: as they are, and what they are made into.
-_PLAN: Final = "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed"
+_PLAN: Final = "seeds", "metric", "search", "decisions", "every", "validation", "seed"
 _OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "preset", "changes", "digits")
 
 
 def add_commands(commands: Any) -> None:
-    """Add `sweep` and `study` to a parser's sub-commands."""
+    """Add `sweep` to a parser's sub-commands."""
     sweep = commands.add_parser(
         "sweep", help="train many times with other settings, on all cores or on a cluster, to see which knobs matter"
     )
@@ -34,9 +32,7 @@ def add_commands(commands: Any) -> None:
     add("--metric", metavar="NAME", help="compare trials by time_to_99 (any share), success, return, mean or accuracy")
     add("--knobs", metavar="NAMES", help="knobs or groups to search, with commas between (default: learning, a group)")
     add("--space", type=Path, metavar="FILE", help="knobs to search, with ranges, as JSON")
-    add("--search", choices=("tpe", "random", "population"), help="how settings are proposed (default: tpe, by Optuna)")
-    add("--population", type=int, metavar="N", help="members of a generation (default: 8)")
-    add("--stop-early", action="store_true", default=None, help="end trials that fall behind (ASHA)")
+    add("--search", choices=("tpe", "random"), help="how settings are proposed (default: tpe, by Optuna)")
     add("--decisions", type=int, metavar="N", help="length of each run (default: 250,000)")
     add("--every", type=int, metavar="N", help="decisions or epochs between two measurements")
     add("--validation", type=int, metavar="N", help="episodes of a measurement, as for train")
@@ -46,14 +42,7 @@ def add_commands(commands: Any) -> None:
     add("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
     add("--seed", type=int, help="of the search itself (default: 0)")
     add("--address", metavar="HOST:PORT", help="join the Ray cluster there")
-    add("--workers", type=int, metavar="N", help="processes at once (default: all cores)")
     sweep.set_defaults(run=_sweep)
-
-    study = commands.add_parser("study", help="tell what a study found: the best settings, and which knobs matter")
-    study.add_argument("study", metavar="NAME", help="name of the study, or a path of its folder")
-    study.add_argument("--json", action="store_true", help="print one JSON object")
-    study.add_argument("--html", type=Path, metavar="FILE", help="write one page with plots, which needs nothing else")
-    study.set_defaults(run=_study)
 
 
 @cli.refusing
@@ -63,56 +52,45 @@ def _sweep(arguments: argparse.Namespace) -> int:
 
     if not installed():
         raise ImportError(MISSING)
-    cli.check_ranges(arguments, trials=(1, 100_000), validation=cli.EPISODES, seed=cli.SEEDS, workers=cli.WORKERS)
-    cli.check_ranges(arguments, seeds=_RUNS, population=_RUNS, decisions=_BUDGET, every=_BUDGET)
+    cli.check_ranges(arguments, trials=(1, 100_000), validation=cli.EPISODES, seed=cli.SEEDS, seeds=_SEEDS)
+    cli.check_ranges(arguments, decisions=_BUDGET, every=_BUDGET)
     place = _place(arguments)
     if arguments.address is not None:
         answering(arguments.address)  # before there is a study
     study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
-    with study.claimed(), cli.stoppable() as stop:
-        code = 0 if study.complete else _run(arguments, study, stop)
-    _print(study)
+    with study.claimed():
+        stop, lost = ([], {}) if study.complete else _run(study, arguments.address)
+    print("\n".join(cli.readable(line, len(line)) for line in study.table().splitlines()), flush=True)
     if not study.complete:
         named = f" --env {arguments.env}" if ":" in (arguments.env or "") else ""
         kept = f"{len(study.trials)} of {study.plan.trials} trials are kept"
         cli.say(f"{kept}; to go on: sweep --study {arguments.study} --resume{named}")
-    return cli.exit_code(stop) or code
+    if lost and not stop:
+        numbers, why = ", ".join(map(str, sorted(lost))), "; ".join(sorted(set(lost.values())))
+        return cli.fail(f"trials failed again and again: {numbers}: {why}")
+    return cli.exit_code(stop)
 
 
-def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
-    """Run the trials that a study has left; return the exit code: that of a failure if some could not be made."""
+def _run(study: Study, address: str | None) -> tuple[list[int], dict[int, str]]:
+    """Run the trials that a study has left; return signals that came, and why trials failed, by number."""
     from ai.sweep.cluster import joined
-    from ai.sweep.report import settings
+    from ai.sweep.study import settings
 
-    shown = study.best()
-
-    def show() -> None:
-        nonlocal shown
-        words, best = f"{len(driver.jobs)} running", study.best()
-        if best:
-            described = f"best {study.shown(best.value)}, trial {best.number}: {settings(best.params)}"
-            words += f", {described}"
-            if bar.disable and best is not shown:
-                cli.fail(f"{len(study.trials)} of {study.plan.trials} trials: {described}")
-        shown = best
-        bar.set_postfix_str(words)
-        bar.update(len(study.trials) - bar.n)
-
-    with joined(arguments.address, arguments.workers) as workers:
-        if stop:
-            return 0
-        from ai.sweep.driver import Driver
+    with joined(address) as workers, cli.stoppable() as stop:
+        from ai.sweep.driver import run
 
         with cli.progress_bar(study.plan.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
-            driver = Driver(study, workers, lambda line: bar.write(cli.readable(line), file=cli.Unheard()), show)
-            driver.run(stop)
-    with suppress(OSError):  # it is made from the rest
-        study.importance = driver.search.importance()
-        study.write()
-    if driver.lost and not stop:
-        numbers, why = ", ".join(map(str, sorted(driver.lost))), "; ".join(sorted(set(driver.lost.values())))
-        return cli.fail(f"trials failed again and again: {numbers}: {why}")
-    return 0
+
+            def report(under_way: int) -> None:
+                finished, best = len(study.trials) - bar.n, next(iter(study.ranked()), None)
+                words = best and f"best {study.shown(best.value)}, trial {best.number}: {settings(best.params)}"
+                bar.set_postfix_str(f"{under_way} running" + (f", {words}" if words else ""))
+                bar.update(finished)
+                if finished and bar.disable:
+                    bar.n = len(study.trials)
+                    cli.fail(f"{bar.n} of {study.plan.trials} trials: {words or 'none has a result yet'}")
+
+            return stop, run(study, workers, stop, report)
 
 
 def _place(arguments: argparse.Namespace) -> Path:
@@ -125,7 +103,11 @@ def _place(arguments: argparse.Namespace) -> Path:
         cli.folder(name)
     except argparse.ArgumentTypeError as error:
         raise ValueError(str(error)) from error
-    return Path(name) if "/" in name or "\\" in name else (arguments.user_dir or user_dir()) / STUDIES / name
+    if "/" in name or "\\" in name:
+        return Path(name)
+    if name in (".", ".."):
+        raise ValueError(f"--study takes a name, or the path of a folder, such as {name}/first")
+    return (arguments.user_dir or user_dir()) / STUDIES / name
 
 
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
@@ -138,7 +120,7 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
     from ai.training.config import Config, check_env
 
     if given := [name for name in _OF_A_NEW_ONE if getattr(arguments, name) is not None]:
-        named = ", ".join(f"--{'set' if name == 'changes' else name.replace('_', '-')}" for name in given)
+        named = ", ".join(f"--{'set' if name == 'changes' else name}" for name in given)
         raise ValueError(f"a study that has begun keeps its plan: {named} can only be given without --resume")
     study = Study.load(place)
     config = study.plan.config
@@ -165,36 +147,13 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         raise ValueError("--env and --decisions are not for digits: these train for --set epochs=N")
     if arguments.knobs is not None and arguments.space is not None:
         raise ValueError("say what to search with --knobs or with --space, not with both")
+    names = ("learning" if arguments.knobs is None else arguments.knobs).replace(" ", "").split(",")
+    if not all(names):
+        raise ValueError(f"--knobs takes names of knobs or groups, with commas between, not {arguments.knobs!r}")
     config: Any = (digit_config if arguments.digits else lander_config)(arguments)
     check_ready(config)
-    if arguments.space is not None:
-        space = read_space(config, arguments.space)
-    else:
-        space = knob_space(config, (arguments.knobs or "learning").split(","))
+    space = knob_space(config, names) if arguments.space is None else read_space(config, arguments.space)
     if arguments.digits and arguments.knobs is None:
         space.pop("epochs", None)  # it is the budget
     given = {name: getattr(arguments, name) for name in (*_PLAN, "trials")}
     return Plan.of(config, space, **{name: value for name, value in given.items() if value is not None})
-
-
-@cli.refusing
-def _study(arguments: argparse.Namespace) -> int:
-    from ai.files import write_text
-    from ai.sweep.report import page, report
-    from ai.sweep.study import Study
-
-    study = Study.load(_place(arguments))
-    if arguments.html:
-        write_text(arguments.html, page(study))
-    if arguments.json:
-        print(json.dumps(report(study), indent=2))
-    else:
-        _print(study)
-    return 0
-
-
-def _print(study: Study) -> None:
-    """Print the table of a study, whose texts may be somebody else's."""
-    from ai.sweep.report import table
-
-    print("\n".join(cli.readable(line, len(line)) for line in table(study).splitlines()), flush=True)

@@ -1,4 +1,4 @@
-"""Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help."""
+"""Co-pilot that shares control with a pilot, inference of the pad the pilot means."""
 
 from ai.copilot.copilot import CoPilot, Mode, SharedDecision
 from ai.copilot.guardian import ActionSource

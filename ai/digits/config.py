@@ -36,16 +36,15 @@ class DigitConfig(Knobs):
     final_learning_rate: float = knob(1e-6, "Final learning rate, reached along half a cosine.",
                                       "learning", low=1e-7, high=1.0, log=True, live=True)
     warm_up_epochs: float = knob(0.5, "Epochs over which the learning rate rises from 0.",
-                                 "learning", low=0.0, high=10.0, formerly="warm_up")
+                                 "learning", low=0.0, high=10.0)
     epochs: int = knob(12, "Epochs: passes over all training images.", "learning", low=1, high=1000)
     batch_size: int = knob(50, "Batch size: images in each learning step.", "learning", low=1, high=5000)
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("softmax_cross_entropy", "Cost function: measures the error.", "learning", choices=tuple(COSTS))
     label_smoothing: float = knob(0.05, "Label smoothing: share of each label given to all digits alike.",
-                            "learning", low=0.0, high=0.5, live=True, formerly="smoothing")
+                            "learning", low=0.0, high=0.5, live=True)
     ema_decay: float = knob(0.998, "Decay of the moving average of weights that is kept; 0 keeps the last.",
-                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999),
-                            formerly="averaging")
+                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999))
     held_out: int = knob(5_000, "Validation images, never learnt from, to pick the best by.",
                          "learning", low=0, high=30_000)
 
@@ -63,7 +62,7 @@ class DigitConfig(Knobs):
     augmentation: float = knob(1.0, "Augmentation: how far images are bent, slanted and turned.",
                                "images", low=0.0, high=2.0, live=True)
     unaugmented: float = knob(0.1, "Share of images left without augmentation.", "images", low=0.0, high=1.0, live=True,
-                           needs="augmentation", formerly="original")
+                           needs="augmentation")
     drawn: float = knob(0.0, "Share of images replaced by the same digit from a simulated hand.",
                         "images", low=0.0, high=0.5, live=True)
     # fmt: on

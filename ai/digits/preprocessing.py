@@ -52,10 +52,10 @@ def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
     ink = redrawn(strokes)
     if not ink.any():
         return np.zeros((SIDE, SIDE), np.float32)
-    return _placed(ink, (len(ink) / 2, len(ink) / 2), CELLS, True)
+    return _placed(ink, CELLS)
 
 
-def stroke_stages(ink: Image, canvas: npt.ArrayLike, *, centre: bool = True) -> Stages:
+def stroke_stages(ink: Image, canvas: npt.ArrayLike) -> Stages:
     """Return strokes that were `redrawn` at each stage, and the canvas that they were drawn on with some pen.
 
     What the network reads of them is what `preprocess_strokes` returns: they are not thinned on the canvas, where
@@ -65,7 +65,7 @@ def stroke_stages(ink: Image, canvas: npt.ArrayLike, *, centre: bool = True) -> 
     if not ink.any():
         return seen
     middle = (len(ink) / 2, len(ink) / 2)
-    return seen._replace(thinned=_resample(ink, middle, CELLS, BOX), centred=_placed(ink, middle, CELLS, centre))
+    return seen._replace(thinned=_resample(ink, middle, CELLS, BOX), centred=_placed(ink, CELLS))
 
 
 def redrawn(strokes: Sequence[Stroke]) -> Image:
@@ -83,14 +83,8 @@ def redrawn(strokes: Sequence[Stroke]) -> Image:
     return draw_strokes(placed, (size, size), STROKE_WIDTH * CELLS)
 
 
-def stages(
-    canvas: npt.ArrayLike, *, crop: bool = True, fit: bool = True, width: bool = True, centre: bool = True
-) -> Stages:
-    """Return a canvas at each stage; any step can be left out, to measure its effect.
-
-    Without `crop`, the whole canvas is taken for the ink. Without `fit`, it is the canvas that shrinks to 28
-    pixels, and ink is as large and as small in it as it was drawn. Without `width`, strokes stay as wide as they
-    are. Without `centre`, the middle of the box goes to the middle, not the centre of mass.
+def stages(canvas: npt.ArrayLike, *, width: bool = True) -> Stages:
+    """Return a canvas at each stage; without `width`, strokes stay as wide as they are.
 
     What is not a number is no ink; where ink exceeds 1, the brightest counts as 1.
     """
@@ -99,22 +93,21 @@ def stages(
     if box is None:
         empty = np.zeros((BOX, BOX), np.float32)
         return Stages(drawn, drawn, empty, empty, np.zeros((SIDE, SIDE), np.float32))
-    cropped = drawn[box] if crop else drawn
-    frame, measure = (BOX, cropped) if fit else (SIDE, drawn)
+    cropped = drawn[box]
 
     # On a fine grid around the middle of the box.
     middle = (cropped.shape[0] / 2, cropped.shape[1] / 2)
-    pitch = max(measure.shape) / (frame * CELLS)
-    ink = _resample(cropped, middle, pitch, (frame + 2 * MARGIN) * CELLS)
+    pitch = max(cropped.shape) / (BOX * CELLS)
+    ink = _resample(cropped, middle, pitch, (BOX + 2 * MARGIN) * CELLS)
     middle = (len(ink) / 2, len(ink) / 2)
-    fitted = _resample(ink, middle, CELLS, frame)
+    fitted = _resample(ink, middle, CELLS, BOX)
     cells = float(CELLS)  # along a pixel of the result
     if width:
-        ink, growth = _with_stroke_width(_covered(ink, drawn.max()), frame if fit else None)
+        ink, growth = _with_stroke_width(_covered(ink, drawn.max()))
         cells /= growth
         middle = _middle_of(_box(ink))
-    thinned = _resample(ink, middle, cells, frame)
-    return Stages(drawn, cropped, fitted, thinned, _placed(ink, middle, cells, centre))
+    thinned = _resample(ink, middle, cells, BOX)
+    return Stages(drawn, cropped, fitted, thinned, _placed(ink, cells))
 
 
 def _clean(canvas: npt.ArrayLike) -> Image:
@@ -146,11 +139,10 @@ def _middle_of(box: tuple[slice, slice] | None) -> tuple[float, float]:
     return (rows.start + rows.stop) / 2, (columns.start + columns.stop) / 2
 
 
-def _placed(ink: Image, middle: tuple[float, float], cells: float, centre: bool) -> Image:
-    """Return (28, 28) around the centre of mass, or else around the middle, at so many cells to a pixel."""
-    if centre:
-        down, across = _centre_of_mass(ink)
-        middle = (down + (SIDE / 2 - CENTRE) * cells, across + (SIDE / 2 - CENTRE) * cells)
+def _placed(ink: Image, cells: float) -> Image:
+    """Return (28, 28) around the centre of mass, at so many cells to a pixel."""
+    down, across = _centre_of_mass(ink)
+    middle = (down + (SIDE / 2 - CENTRE) * cells, across + (SIDE / 2 - CENTRE) * cells)
     return _resample(ink, middle, cells, SIDE)
 
 
@@ -184,15 +176,13 @@ def _covered(ink: Image, full: float) -> npt.NDArray[np.bool_]:
     return covered
 
 
-def _with_stroke_width(ink: npt.NDArray[np.bool_], frame: int | None) -> tuple[Image, float]:
+def _with_stroke_width(ink: npt.NDArray[np.bool_]) -> tuple[Image, float]:
     """Return ink whose strokes are as wide as MNIST's once it is enlarged by a factor, and the factor.
 
-    The factor makes what the pen's tip went along fit `frame` pixels again; without a frame it is 1.
+    The factor makes what the pen's tip went along fit the box again.
     """
-    width, growth = stroke_width(ink) / CELLS, 1.0
-    if frame is not None:
-        path = max(frame - width, 1.0)
-        growth = min(LARGEST_GROWTH, (frame - STROKE_WIDTH) / path)
+    width = stroke_width(ink) / CELLS
+    growth = min(LARGEST_GROWTH, (BOX - STROKE_WIDTH) / max(BOX - width, 1.0))
     step = (STROKE_WIDTH / growth - width) / 2 * CELLS
     reach = math.ceil(abs(step)) + 1
     if step > 0:

@@ -298,7 +298,7 @@ def read_settings(folder: Path) -> tuple[DigitConfig, DescribedRun]:
     try:
         described = read_as(DescribedRun, read_json(inside(folder, TRAINING_FILE)))
         preset = DIGIT_PRESETS[described.preset].to_json()
-        config = DigitConfig.from_json(preset | DigitConfig.renamed(described.changes))
+        config = DigitConfig.from_json(preset | described.changes)
     except (OSError, ValueError, TypeError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     return config, described

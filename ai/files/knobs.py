@@ -1,8 +1,6 @@
 """Settings as a dataclass whose fields describe themselves, for commands, screens and files alike.
 
-A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on. A
-field that was renamed says what it was called `formerly`: saved settings are read under both names, for ever, and
-written under the present one.
+A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on.
 """
 
 from __future__ import annotations
@@ -29,12 +27,11 @@ def knob(
     live: bool = False,
     offers: tuple[Any, ...] = (),
     needs: str = "",
-    formerly: str = "",
 ) -> Any:
     """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
 
     `offers` are a few values for a screen to propose, where the range says too little. `needs` names another field:
-    while that is off or 0, this one has no effect. `formerly` is the field's name in older files.
+    while that is off or 0, this one has no effect.
     """
     described = locals().copy()
     return field(default=described.pop("default"), metadata=described)
@@ -70,8 +67,9 @@ class Knobs:
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any]) -> Self:
-        """Read what `to_json` wrote, now or under former names; raises ValueError for unknown names and bad values."""
-        values = cls.renamed(values)
+        """Read what `to_json` wrote; raises ValueError for unknown names and bad values."""
+        if not isinstance(values, Mapping):  # a file may hold anything
+            raise ValueError(f"settings are values by name, not {shown(values)}")
         unknown = sorted(set(values) - cls.names())
         if unknown:
             raise ValueError(f"unknown settings: {', '.join(unknown)}")
@@ -81,27 +79,6 @@ class Knobs:
     def names(cls) -> set[str]:
         """Return the names of all fields."""
         return {item.name for item in fields(cls)}
-
-    @classmethod
-    def name_now(cls, name: str) -> str:
-        """Return the present name of a setting, given that or a former one; a part after a dot stays as it is."""
-        head, dot, part = name.partition(".")
-        former = {item.metadata["formerly"]: item.name for item in fields(cls)}
-        return f"{former[head]}{dot}{part}" if head and head in former else name
-
-    @classmethod
-    def renamed(cls, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return values by present names, given by present or former ones.
-
-        Raises ValueError for a setting given under both, and for what is no mapping, as a file may hold anything.
-        """
-        if not isinstance(values, Mapping):
-            raise ValueError(f"settings are values by name, not {shown(values)}")
-        named = {cls.name_now(name): value for name, value in values.items()}
-        if len(named) < len(values):
-            twice = sorted(name for name in values if cls.name_now(name) != name and cls.name_now(name) in values)
-            raise ValueError(f"settings given under their present and a former name: {', '.join(twice)}")
-        return named
 
     @classmethod
     def value_from_json(cls, name: str, value: Any) -> Any:  # noqa: ARG003
@@ -117,7 +94,6 @@ class Knobs:
 
         Raises ValueError for a name that no setting has, for one that is not live, and for a value out of range.
         """
-        name = self.name_now(name)
         head, _, part = name.partition(".")
         live = {item.name: item.metadata["live"] for item in fields(self)}
         whole = getattr(self, head) if head in live else None

@@ -6,10 +6,9 @@ and compares whole runs of examples at a time, however small the images are, and
 are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-memory.md).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import product
 from math import prod
-from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -33,7 +32,6 @@ class ConvolutionLayer(FullyConnectedLayer):
     """
 
     settings = ("inputs", "filters", "kernel")
-    formerly: Mapping[str, Any] = {"stride": 1, "padding": 0}
     inputs: ImageShape
     outputs: ImageShape
 

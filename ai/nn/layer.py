@@ -5,7 +5,7 @@ An *error* is the derivative of the cost with respect to what it stands for: one
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -37,7 +37,6 @@ class Layer(ABC):
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
-    formerly: Mapping[str, Any] = {}  # settings of earlier versions, and the only value that can still be read
     inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
     outputs: int | ImageShape | None = None
     shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
@@ -93,15 +92,6 @@ class Layer(ABC):
     @abstractmethod
     def predict(self, input_data: Array) -> Array:
         """Return the output and keep nothing."""
-
-    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
-        """Return a function that predicts the one example in `memory` into `output`, for `ai.nn.network.SingleExample`.
-
-        `memory` is (inputs + 1,): the example, and a 1 for a bias; `output` is (outputs,). `values` are the layer's
-        parameters, flat. Layers whose `predict` is slow for one example have a quicker step.
-        """
-        example = memory[:-1]
-        return lambda: np.copyto(output, self.predict(example))
 
     def backward_propagate(self, output_error: Array) -> Array:
         """Fill the parameters' gradients and return the input error, both of the last forward pass."""

@@ -1,7 +1,6 @@
 """Layers on vectors: fully connected, dueling, activation, normalisation, dropout."""
 
-from collections.abc import Callable
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -52,10 +51,6 @@ class FullyConnectedLayer(Layer):
         output += bias.value
         return output
 
-    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
-        """Return the step x W + b of one example, as the one product [x 1] [W; b]: a sum apart takes a fifth longer."""
-        return partial(memory.dot, values.reshape(-1, output.size), output)
-
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, xᵀ E, and bias, Σ E over the batch."""
         weights, bias = self.parameters
@@ -82,8 +77,6 @@ class DuelingLayer(FullyConnectedLayer):
     the advantages A. With n outputs, Q = [V A]·M, and M is `mixture`: a row of ones above the unit matrix less 1/n. So
     the error E of Q is E·Mᵀ for the streams.
     """
-
-    single_step = Layer.single_step  # by `predict`, not as a fully connected layer
 
     def __init__(self, inputs: int, outputs: int, *, scale: float = 1.0) -> None:
         super().__init__(inputs, outputs, scale=scale)
@@ -135,10 +128,6 @@ class ActivationLayer(Layer):
         """Return f(x) as a new array."""
         return self.activation.function(input_data)
 
-    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
-        """Return the step that fills in f(x) of one example."""
-        return partial(self.activation.function, memory[:-1], output)
-
     def input_error(self, output_error: Array) -> Array:
         """Return f'(x) · E."""
         error = self.kept("error", self.output.shape, self.output.dtype)
@@ -185,25 +174,17 @@ class LayerNormalisation(Layer):
         return self.output
 
     def predict(self, input_data: Array) -> Array:
-        """Return the normalised batch as a new array."""
+        """Return the normalised batch, or the one example, as a new array."""
         gain, bias = self.parameters
+        if input_data.ndim == 1:  # with plain numbers in place of columns of one: in a third of the time
+            centred: Array = input_data - input_data.dot(self._average)
+            centred *= gain.value * (1 / np.sqrt(centred.dot(centred) / self.size + self.epsilon))
+            centred += bias.value
+            return centred
         output = np.empty_like(input_data)
         output *= self._centre(input_data, output).dot(gain.value[None])
         output += bias.value
         return output
-
-    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
-        """Return the step that normalises one example: `predict`, with plain numbers in place of columns of one."""
-        example, average = memory[:-1], self._average
-        gain, bias = values.reshape(2, self.size)
-
-        def step() -> None:
-            centred = example - example.dot(average)
-            inverse = 1 / np.sqrt(centred.dot(centred) / self.size + self.epsilon)
-            np.multiply(centred, inverse * gain, out=output)
-            np.add(output, bias, out=output)
-
-        return step
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of gain, Σ E · centred · inverse, and bias, Σ E over the batch."""

@@ -1,9 +1,9 @@
 """Neural network: a list of layers, the cost to minimise, and one flat vector of all parameters."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import Final, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -16,43 +16,6 @@ from ai.nn.parameter import Array, pack
 from ai.nn.storage import read_network, save_network
 
 IMAGES = 250  # predicted at a time: each takes some 100 KB on its way
-
-
-class SingleExample:
-    """What the `predict` of layers in a row does for one example, in half the time.
-
-    Each layer writes into memory that the next one reads; there a 1 stands behind the values, for a bias to be
-    multiplied by. `values` are the parameters of all layers, flat.
-
-    Attributes:
-        shape: of what it takes, (1, inputs); None for layers that take images, which it does not serve.
-
-    """
-
-    def __init__(self, layers: Sequence[Layer], values: Array) -> None:
-        self.shape: tuple[int, int] | None = None
-        sizes = [size for layer in layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
-        if not sizes or any(isinstance(layer.inputs, tuple) for layer in layers):
-            return
-        self.shape = (1, sizes[0])
-        memory = np.ones(sizes[0] + 1, values.dtype)
-        self._example: Final = memory[None, :-1]
-        self._steps: Final[list[Callable[[], object]]] = []
-        for layer in layers:
-            outputs = layer.outputs if isinstance(layer.outputs, int) else len(memory) - 1
-            following = np.ones(outputs + 1, values.dtype)
-            size = sum(parameter.value.size for parameter in layer.parameters)
-            self._steps.append(layer.single_step(memory, values[:size], following[:-1]))
-            memory, values = following, values[size:]
-        self._answer: Final = memory[None, :-1]
-
-    def predict(self, example: Array) -> Array:
-        """Return the output (1, outputs) for an example of `shape`, as a new array."""
-        self._example[...] = example
-        for step in self._steps:
-            step()
-        answer: Array = self._answer.copy()
-        return answer
 
 
 class NeuralNetwork:
@@ -87,8 +50,7 @@ class NeuralNetwork:
             for before in self.layers:
                 before.initialise = before.initialise or layer.activation.initialise
         self.layers.append(layer)
-        for name in ("_flat", "_single"):  # made anew when needed
-            self.__dict__.pop(name, None)
+        self.__dict__.pop("_flat", None)  # made anew when needed
         return self
 
     @property
@@ -109,23 +71,19 @@ class NeuralNetwork:
     def _flat(self) -> tuple[Array, Array]:
         return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
 
-    @cached_property
-    def _single(self) -> SingleExample:
-        return SingleExample(self.layers, self.values)
-
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
 
         Inputs of a network for images are (batch, height, width, channels), or without the batch as well.
-        Leaves no trace: a backward pass may still follow the last `forward_propagate`. One example at a time
-        is for one thread at a time.
+        Leaves no trace: a backward pass may still follow the last `forward_propagate`.
         """
         data: Array = np.asarray(input_data, self.dtype)
-        if data.shape == self._single.shape:
-            return self._single.predict(data)
         if data.ndim == 3:
             one: Array = self.predict(data[None])[0]
             return one
+        if data.ndim == 2 and len(data) == 1:  # as a vector: in two thirds of the time
+            answer: Array = self.predict(data[0])[None]
+            return answer
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:

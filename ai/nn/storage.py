@@ -174,9 +174,8 @@ def _make_layer(description: Any) -> Layer:
     if name not in LAYERS:
         raise ValueError(f"unknown type {shown(name)}; known are {', '.join(LAYERS)}")
     kind = LAYERS[name]
-    for setting, only in kind.formerly.items():
-        if (found := description.get(setting, only)) != only:
-            raise ValueError(f"{setting} is {shown(found)}, and this version of {name} has {only} alone")
+    if unknown := sorted(description.keys() - {"type", "arrays", *kind.settings}):
+        raise ValueError(f"a {name} has no {brief(', '.join(unknown))}")
     settings = {setting: _required(description, setting) for setting in kind.settings}
     if "activation" in settings:
         settings["activation"] = _named(ACTIVATIONS, settings["activation"])

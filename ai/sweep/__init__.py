@@ -1,5 +1,5 @@
-"""Sweeps: many training runs with other settings, as trials of a study, and what a study found.
+"""Sweeps: the same task trained many times with other settings, to see which of them matter.
 
-A study is a folder of plain files that `study` and the game read with NumPy alone. To run trials needs the extra
-`sweep`: Optuna (`search`) proposes them, Ray (`cluster`, `driver`) trains them.
+A study is a folder of plain files (`study`). To run its trials needs the extra `sweep`: Optuna asks for settings, Ray's
+tasks train them (`driver`).
 """

@@ -1,135 +1,117 @@
-"""Trials of a study on Ray: each is a task that yields a result at every mark, and what was lost goes on elsewhere.
+"""Trials of a study: Optuna asks for settings, Ray's tasks train them, and this process alone writes the study.
 
-Comes with the extra `sweep`. What is to be tried comes from `ai.sweep.search`, and this process alone writes the study.
+Comes with the extra `sweep`. Optuna keeps nothing on disk: when a study goes on, it is told the finished trials, each
+checked when it was read. Ray is told nothing twice: a trial whose worker or node dies begins again elsewhere.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Sequence
+import json
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Any, Final
 
+import optuna
 import ray
+from optuna.distributions import CategoricalDistribution, FloatDistribution, IntDistribution
+from optuna.trial import TrialState, create_trial
 from ray.exceptions import RayError, RayTaskError
 
 from ai.files import brief
-from ai.nn import ModelFormatError
-from ai.sweep.plan import POPULATION, Plan
-from ai.sweep.search import Population, Proposals, Search
-from ai.sweep.study import Asked, Files, FinishedTrial, Study
-from ai.sweep.trial import Trial, check_ready, fingerprint
+from ai.sweep.plan import RANDOM, Dimension
+from ai.sweep.study import Study
+from ai.sweep.trial import trained
 
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
-MOST_LOST: Final = 100  # trials that could not be made, after which no other is begun
+MOST_LOST: Final = 10  # trials that could not be made, after which no other is begun
 _TURN: Final = 0.2  # seconds after which a wait for workers looks around
 
 
-def trained(
-    code: str, plan: Plan, asked: Asked, source: FinishedTrial | None, runs: Files, checkpoint: float
-) -> Iterator[tuple[FinishedTrial, Files, bool]]:
-    """Train a trial; yield at every mark the result, the runs if there are new ones to keep, and whether it is over.
+class Proposals:
+    """Optuna's side of a study: settings to try next, and what came of them."""
 
-    `source` and `runs` are those of a `Trial`; `checkpoint` are the seconds between two times that runs are kept.
-    Raises RuntimeError, ImportError, ValueError or ModelFormatError for what is no result of a trial: a node that has
-    other code, or not all that is needed.
-    """
-    if code != fingerprint():
-        raise RuntimeError("this node has another version of Tranquility than the one that runs the study")
-    check_ready(plan.config)
-    try:
-        trial = Trial(plan, asked, source, runs)
-    except ModelFormatError:  # of its parent
-        raise
-    except ValueError as error:
-        yield FinishedTrial(asked.number, asked.params, None, 0, False, 0.0, (), problem=brief(error)), {}, True
-        return
-    kept = time.monotonic()
-    while not trial.done:
-        trial.step()
-        if not trial.done:
-            due = time.monotonic() - kept >= checkpoint
-            kept = time.monotonic() if due else kept
-            yield trial.result(), trial.checkpoint() if due else {}, False
-    yield *trial.finish(), True
+    def __init__(self, study: Study) -> None:
+        optuna.logging.set_verbosity(optuna.logging.ERROR)
+        plan = study.plan
+        self._space = plan.space
+        self._distributions = {name: _distribution(dimension) for name, dimension in plan.space.items()}
+        # Another seed each time, or a study that goes on would propose once more what it began with.
+        seed = plan.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
+        samplers = optuna.samplers
+        self._optuna = optuna.create_study(
+            direction="minimize" if study.metric.sign == 1 else "maximize",
+            sampler=samplers.RandomSampler(seed)
+            if plan.search == RANDOM
+            else samplers.TPESampler(seed=seed, constant_liar=True),  # so that many at once are not the same
+        )
+        for trial in study.ranked():
+            given = {name: self._given(name, value) for name, value in trial.params.items()}
+            self._optuna.add_trial(create_trial(params=given, distributions=self._distributions, value=trial.value))
+
+    def ask(self) -> tuple[int, dict[str, Any]]:
+        """Return settings to try, and the number by which Optuna is told of them."""
+        asked = self._optuna.ask(self._distributions)
+        drawn = {name: json.loads(each) if self._space[name].choices else each for name, each in asked.params.items()}
+        return asked.number, drawn
+
+    def tell(self, number: int, value: float | None) -> None:
+        """Note what came of settings; None for nothing."""
+        self._optuna.tell(number, value, state=TrialState.FAIL if value is None else TrialState.COMPLETE)
+
+    def _given(self, name: str, value: Any) -> Any:
+        return json.dumps(value) if self._space[name].choices else value
+
+
+def _distribution(dimension: Dimension) -> Any:
+    if dimension.choices:
+        return CategoricalDistribution([json.dumps(value) for value in dimension.choices])
+    if dimension.whole:
+        return IntDistribution(int(dimension.low), int(dimension.high), log=dimension.log)
+    return FloatDistribution(dimension.low, dimension.high, log=dimension.log)
 
 
 @dataclass
 class _Job:
-    """Trial under way: what it would go on from, and how often it was begun."""
+    """Trial under way, and how often it was begun."""
 
-    asked: Asked
-    source: FinishedTrial | None
-    runs: Files
-    tries: int = 0
+    number: int
+    asked: int  # Optuna's number
+    params: dict[str, Any]
+    tries: int = 1
 
 
-class Driver:
-    """Runs the trials that a study has left, on the Ray that was joined.
+def run(study: Study, workers: int, stop: Sequence[int], report: Callable[[int], None]) -> dict[int, str]:
+    """Run the trials that a study has left, on the Ray that was joined, until all are done or the user says stop.
 
-    Ray gives a core to a trial as long as it lasts. So none is held by a worker that waits, and a trial whose node is
-    lost goes on where a core becomes free.
-
-    Attributes:
-        search: what is to be tried.
-        jobs: trials under way, by Ray's generator of their results.
-        lost: why trials could not be made, by number.
-        checkpoint: seconds between two checkpoints of a trial.
-
+    `report` is told now and then how many are under way. Returns why trials could not be made, by number; raises
+    OSError where a trial cannot be written.
     """
-
-    def __init__(self, study: Study, workers: int, say: Callable[[str], None], report: Callable[[], None]) -> None:
-        self._study, self._workers, self._say, self._report = study, workers, say, report
-        self.search: Search = Population(study) if study.plan.search == POPULATION else Proposals(study)
-        self.jobs: dict[Any, _Job] = {}
-        self.lost: dict[int, str] = {}
-        self.checkpoint = 20.0
-
-    def run(self, stop: Sequence[int]) -> None:
-        """Run until all is done, nothing more can be, or the user says stop; raises OSError for a full disk."""
-        study = self._study
-        while not stop:
-            room = self._workers if len(self.lost) < MOST_LOST else 0
-            while len(self.jobs) < room and (asked := self.search.next()):
-                study.begin(asked)
-                parent = None if asked.parent is None else study.trials[asked.parent]
-                self._start(_Job(asked, parent, study.runs_of(parent) if parent else {}))
-            if not self.jobs:
-                break
-            for results in ray.wait(list(self.jobs), timeout=_TURN)[0]:
-                self._take(results)
-            self._report()
-
-    def _start(self, job: _Job) -> None:
-        """Begin a trial, or go on with it from its last checkpoint. A worker waits until its results are taken."""
-        job.tries += 1
-        train = ray.remote(num_cpus=1, max_retries=0, _generator_backpressure_num_objects=1)(trained)
-        given = (self._study.plan, job.asked, job.source, job.runs, self.checkpoint)
-        self.jobs[train.remote(fingerprint(), *given)] = job
-
-    def _take(self, results: Any) -> None:
-        """Take what a worker yields: the trial has come to a mark, is over, or is lost."""
-        job = self.jobs.pop(results)
-        try:
-            result, runs, over = ray.get(next(results))
-        except RayTaskError as error:
-            self._lose(job, str(error.cause))
-        except (RayError, StopIteration) as error:
-            if job.tries < TRIES:
-                self._start(job)
+    proposals, train = Proposals(study), ray.remote(num_cpus=1, max_retries=0)(trained)
+    numbers = (number for number in count() if number not in study.trials and number not in study.damaged)
+    jobs: dict[Any, _Job] = {}
+    lost: dict[int, str] = {}
+    while not stop:
+        left = study.plan.trials - len(study.trials) - len(lost)
+        while len(jobs) < min(workers, left) and len(lost) < MOST_LOST:
+            job = _Job(next(numbers), *proposals.ask())
+            jobs[train.remote(study.plan, job.number, job.params)] = job
+        if not jobs:
+            break
+        for task in ray.wait(list(jobs), timeout=_TURN)[0]:
+            job = jobs.pop(task)
+            try:
+                trial, files = ray.get(task)
+            except RayError as error:
+                if job.tries < TRIES and not isinstance(error, RayTaskError):
+                    job.tries += 1
+                    jobs[train.remote(study.plan, job.number, job.params)] = job
+                else:
+                    cause = str(error.cause) if isinstance(error, RayTaskError) else str(error)
+                    lost[job.number] = brief(cause.strip().rpartition("\n")[2])
+                    proposals.tell(job.asked, None)
             else:
-                self._lose(job, str(error).strip().rpartition("\n")[2])
-        else:
-            if over or self.search.falls_behind(result):
-                if not over:
-                    ray.cancel(results)
-                self._study.record(result, runs if over else {})
-                self.search.tell(result)
-                return
-            if runs:
-                job.source, job.runs = result, runs
-            self.jobs[results] = job
-
-    def _lose(self, job: _Job, why: str) -> None:
-        self.lost[job.asked.number] = brief(why)
-        self._say(f"a trial failed: {brief(why)}")
+                study.record(trial, files)
+                proposals.tell(job.asked, trial.value)
+        report(len(jobs))
+    return lost

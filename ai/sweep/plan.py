@@ -7,7 +7,6 @@ the images held out), so a metric is the same on a slow machine and on a fast on
 from __future__ import annotations
 
 import json
-import math
 import re
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,15 +14,13 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
-import numpy as np
-
 from ai.digits.config import DigitConfig
 from ai.files import Count, OneOf, Seed, Share, Sized, Within, read_as, read_json
 from ai.files.knobs import Knobs, field_problem
 from ai.training.config import ANYWHERE, LANDER, Config
 
 AGENT, DIGITS = "agent", "digits"  # kinds of run
-TPE, RANDOM, POPULATION = "tpe", "random", "population"
+TPE, RANDOM = "tpe", "random"
 _MEASURED: Final = 5  # times that a run is measured, unless asked otherwise
 
 
@@ -102,35 +99,12 @@ class Dimension:
         if not self.choices and not (self.low < self.high and (self.low > 0 or not self.log)):
             raise ValueError("low lies below high, and above 0 where log is true")
 
-    @property
-    def ends(self) -> tuple[Any, Any]:
-        """First and last value."""
-        return (self.choices[0], self.choices[-1]) if self.choices else (self.low, self.high)
-
-    def place(self, value: Any) -> float:
-        """Return where a value lies in the range, 0 to 1; of a choice, its number over that of the last.
-
-        Raises ValueError or TypeError for what is no such value.
-        """
+    def holds(self, value: Any) -> bool:
+        """Whether a trial of the study can have that value."""
         if self.choices:
-            return self.choices.index(value) / max(1, len(self.choices) - 1)
-        if not self.low <= value <= self.high or (self.whole and value % 1):
-            raise ValueError("out of its range")
-        low, high, at = map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
-        return min(1.0, (at - low) / (high - low))
-
-    def at(self, place: float) -> Any:
-        """Return the value at a place; before 0 and after 1 the first and the last."""
-        place = min(1.0, max(0.0, place))
-        if self.choices:
-            return self.choices[round(place * (len(self.choices) - 1))]
-        value = self.low * (self.high / self.low) ** place if self.log else self.low + (self.high - self.low) * place
-        value = min(self.high, max(self.low, value))
-        return round(value) if self.whole else value
-
-    def draw(self, rng: np.random.Generator) -> Any:
-        """Return a value drawn at random, by the scale of the range."""
-        return self.choices[int(rng.integers(len(self.choices)))] if self.choices else self.at(float(rng.random()))
+            return any(type(each) is type(value) and each == value for each in self.choices)
+        number = type(value) is int or (type(value) is float and not self.whole)
+        return number and self.low <= value <= self.high
 
 
 Space = dict[str, Dimension]
@@ -144,20 +118,18 @@ class Plan:
     settings: dict[str, Any]  # of every run, but for the knobs that are searched
     space: Space  # where each knob is searched, by its name
     seeds: Annotated[tuple[Seed, ...], Sized(1000, 1)]  # of each trial's runs
-    budget: Annotated[int, Within(1, 10**12)]  # decisions or epochs of a run; in a population, of all generations
+    budget: Annotated[int, Within(1, 10**12)]  # decisions or epochs of a run
     every: Annotated[int, Within(1, 10**12)]  # decisions or epochs between two measurements
     metric: str  # what trials are compared by
-    search: Annotated[str, OneOf((TPE, RANDOM, POPULATION))] = TPE  # how settings are proposed
-    stop_early: bool = False  # whether trials that fall behind are ended
+    search: Annotated[str, OneOf((TPE, RANDOM))] = TPE  # how settings are proposed
     trials: Annotated[int, Within(1, 100_000)] = 64
-    population: Count = 0  # members of a generation; 0 without a population
     seed: Seed = 0  # of the search itself
     validation: Annotated[int, Within(1, 50_000)] | None = None  # episodes of a measurement; None: as suits the task
 
     @classmethod
     def of(
         cls, config: Knobs, space: Space, *, seeds: int = 3, decisions: int = 250_000, every: int | None = None,
-        metric: str | None = None, search: str = TPE, trials: int = 64, population: int | None = None, **others: Any,
+        metric: str | None = None, **others: Any,
     ) -> Self:  # fmt: skip
         """Return the plan of a study of runs with these settings, with what is usual for their kind."""
         settings = json.loads(json.dumps(config.to_json()))
@@ -165,13 +137,9 @@ class Plan:
             budget, usual = config.epochs, "accuracy"
         else:
             budget, usual = decisions, "time_to_99" if settings["env"] in (LANDER, ANYWHERE) else "return"
-        if search == POPULATION:
-            population = population or 8
-            every = every or budget // max(1, trials // population)
         return cls(
-            kind=DIGITS if digits else AGENT, settings=settings, space=space, seeds=tuple(range(seeds)),
-            budget=budget, every=every or max(1, budget // _MEASURED), metric=metric or usual, search=search,
-            trials=trials, population=population or 0, **others,
+            kind=DIGITS if digits else AGENT, settings=settings, space=space, seeds=tuple(range(seeds)), budget=budget,
+            every=every or max(1, budget // _MEASURED), metric=metric or usual, **others,
         )  # fmt: skip
 
     @property
@@ -182,7 +150,7 @@ class Plan:
     def check(self) -> None:
         """Raise ValueError if it makes no sense as a whole."""
         Metric.named(self.metric)
-        live, known = self.config.live_names(), self.config.names()
+        known = self.config.names()
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("each seed is there once")
         if not self.space:
@@ -191,40 +159,11 @@ class Plan:
             raise ValueError("a study has one environment: env cannot be searched")
         if unknown := [name for name in self.space if name not in known]:
             raise ValueError(f"there is no setting called {unknown[0]}")
-        if (self.search == POPULATION) != bool(self.population):
-            raise ValueError(f"a population is for --search {POPULATION}")
-        if fixed := [name for name in self.space if self.population and name not in live]:
-            raise ValueError(f"a population changes knobs while a run goes on; {', '.join(fixed)} cannot change then")
-        if self.population and (self.population < 2 or self.trials % self.population or self.stop_early):
-            raise ValueError(
-                "a population has two members or more, trials are a multiple of them, and none is stopped early"
-            )
 
     def check_params(self, params: Mapping[str, Any]) -> None:
-        """Raise ValueError or TypeError for settings that are not of this study's space."""
-        if set(params) != set(self.space):
-            raise ValueError("of another study")
-        for name, dimension in self.space.items():
-            dimension.place(params[name])
-
-    @property
-    def generations(self) -> int:
-        """Number of generations; 1 without a population."""
-        return self.trials // self.population if self.population else 1
-
-    def generation(self, number: int) -> int:
-        """Return the generation of a trial, from 0 on."""
-        return number // self.population if self.population else 0
-
-    def span(self, number: int) -> tuple[int, int]:
-        """Return where the runs of a trial begin and end, in decisions or epochs."""
-        generation = self.generation(number)
-        return self.budget * generation // self.generations, self.budget * (generation + 1) // self.generations
-
-    @property
-    def unit(self) -> str:
-        """Word for what the budget counts."""
-        return "epochs" if self.kind == DIGITS else "decisions"
+        """Raise ValueError for settings that are not of this study's space."""
+        if set(params) != set(self.space) or not all(self.space[name].holds(each) for name, each in params.items()):
+            raise ValueError("settings of another study")
 
 
 def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
@@ -252,7 +191,7 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
             dimension = read_as(Dimension, own | {"whole": kind == "int"} | (asked or {}))
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
-    for value in dimension.choices or dimension.ends:
+    for value in dimension.choices or (dimension.low, dimension.high):
         if problem := field_problem(item, config.value_from_json(name, int(value) if dimension.whole else value)):
             raise ValueError(problem)
     return dimension
@@ -264,7 +203,7 @@ def knob_space(config: Knobs, names: Iterable[str]) -> Space:
     Of a group, knobs that change nothing because another one is off are left out. Raises ValueError for other names.
     """
     space: Space = {}
-    for name in map(config.name_now, names):
+    for name in names:
         group = [item.name for item in fields(config) if item.metadata["group"] == name]
         for each in [each for each in group if each not in config.unused()] or [name]:
             space[each] = knob_dimension(config, each)
@@ -280,4 +219,4 @@ def read_space(config: Knobs, file: Path) -> Space:
     asked = read_json(file)
     if not isinstance(asked, dict) or not asked:
         raise ValueError(f"{file}: a space is a range by the name of each knob")
-    return {(now := config.name_now(name)): knob_dimension(config, now, each) for name, each in asked.items()}
+    return {name: knob_dimension(config, name, each) for name, each in asked.items()}

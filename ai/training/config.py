@@ -42,9 +42,9 @@ class Config(AgentConfig):
     frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
     spawn: str = knob("thorough", "Where flights begin.", "lander", choices=_STARTS)
     final_touchdown_limits: float = knob(0.8, "Touchdown limits after the schedule, as a share of the real ones.",
-                                         "lander", low=0.3, high=1.0, formerly="care")
+                                         "lander", low=0.3, high=1.0)
     reward_weights: RewardWeights = knob(_HASTE, "Weight of each part of the reward.",  # noqa: RUF009
-                                         "lander", live=True, formerly="weights")
+                                         "lander", live=True)
     # fmt: on
 
     def problems(self) -> list[str]:

@@ -326,8 +326,7 @@ class History:
             if saved.scale is not None:
                 Normalizer(len(saved.scale["mean"])).load(saved.scale)  # raises for one that makes no sense
             self.checkpoints.append(Checkpoint(saved.seconds, saved.decisions, saved.success, row, saved.scale))
-        # An older run has the names of its day.
-        self.setting_changes = [replace(each, name=Config.name_now(each.name)) for each in described.alterations]
+        self.setting_changes = list(described.alterations)
         self.validations = list(described.validations)
 
 

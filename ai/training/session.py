@@ -173,7 +173,7 @@ class Session(ABC, Generic[R]):
         """Turn a live knob, by its field's name, or "reward_weights.time"; raises ValueError for what cannot be."""
         before = self.training.config
         self.training.apply_live(before.turned(name, value))
-        read = attrgetter(name := before.name_now(name))
+        read = attrgetter(name)
         if read(self.training.config) != read(before):
             self.record_change(name, read(before), read(self.training.config))
         self.show()

@@ -166,9 +166,9 @@ def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[
     return np.array([*counts, *sums], dtype=float)
 
 
-def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random") -> Evaluation:
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
-    env = LanderEnv(episodes, seed, spawn)
+    env = LanderEnv(episodes, seed, spawn, frame_skip)
     env.reset()
     return Evaluation.of(finished(flown(pilot, env)))
 

@@ -18,7 +18,7 @@ ROUTES: Final = {
     "train": "train.scene.TrainScene", "runs": "train.networks.NetworksScene",
     "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",
     "digit_inside": "digits.inside.DigitInsideScene", "why_not": "digits.why_not.WhyNotScene",
-    "dream": "digits.dream.DreamScene", "quiz": "digits.quiz.QuizScene", "physics": "physics.scene.PhysicsScene",
+    "dream": "digits.dream.DreamScene", "physics": "physics.scene.PhysicsScene",
     "physics_step": "physics.step_scene.PhysicsStepScene",
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",

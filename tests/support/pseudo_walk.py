@@ -53,7 +53,7 @@ from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.networks import on_a_link
-from tests.support.pen import SEVEN, pad_of, stroke
+from tests.support.pen import pad_of, stroke
 from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
@@ -146,20 +146,6 @@ def drawn(driver: Driver) -> None:
     driver.frames(30)
 
 
-def handed_in(driver: Driver) -> None:
-    """Draw a seven in the quiz, and have it read."""
-    stroke(driver, SEVEN)
-    driver.key(pygame.K_RETURN)
-    driver.frames(5)
-
-
-def answered(driver: Driver) -> None:
-    """Say what somebody else wrote."""
-    handed_in(driver)
-    driver.keys(pygame.K_RETURN, pygame.K_3)
-    driver.frames(5)
-
-
 def frame(number: int) -> Happens:
     """Return what shows a frame of a lesson."""
 
@@ -204,23 +190,9 @@ def tried(*labels: str, steps: int) -> Happens:
     return try_it
 
 
-def switched(driver: Driver) -> None:
-    """Draw a seven, and switch the last step of its preprocessing off."""
-    drawn(driver)
-    driver.press_on(texts.DIGITS_SEES)
-    driver.press_on(texts.DIGITS_STAGES["centre"])
-    driver.frames(2)
-
-
 def inside(steps: int, driver: Driver) -> None:
     """Follow a unit some steps on."""
     driver.keys(*[pygame.K_n] * steps)
-    driver.frames(5)
-
-
-def in_code(driver: Driver) -> None:
-    """Look at the code of a convolution."""
-    driver.key(pygame.K_c)
     driver.frames(5)
 
 
@@ -270,13 +242,9 @@ STATES = [
     Stop("PhysicsStepScene", "a step", taken_apart),
     *(Stop("a digit's lesson", f"frame {number + 1}", frame(number)) for number in range(7)),
     Stop("DigitsScene", "a digit", drawn),
-    Stop("DigitsScene", "a switch", switched),
     *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
     Stop("modern inside", "inside", partial(inside, 3)),
-    Stop("modern inside", "code", in_code),
     Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
-    Stop("QuizScene", "read", handed_in),
-    Stop("QuizScene", "answered", answered),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
         for key, labels, steps in (

@@ -7,11 +7,11 @@ power; the end of the input ends it all.
 import os
 import sys
 
-from ai.sweep.cluster import _LOCAL, _QUIET, worker_environment
+from ai.sweep.cluster import LOCAL, worker_environment
 
 
 def main() -> None:
-    os.environ.update(_LOCAL | _QUIET | worker_environment())
+    os.environ.update(LOCAL | {"RAY_USAGE_STATS_ENABLED": "0"} | worker_environment())
     from ray.cluster_utils import Cluster
 
     node = {"num_cpus": 1, "object_store_memory": 100 << 20, "include_dashboard": False}

@@ -35,8 +35,7 @@ def _file() -> tuple[list[str], dict[str, tuple[dict[str, Any], np.ndarray]]]:
     with np.load(FILE, allow_pickle=False) as arrays:
         described = json.loads(str(arrays["described"]))
         return described["columns"], {
-            " ".join(map(Config.name_now, name.split())): (case, arrays[name].T.astype(float))
-            for name, case in described["cases"].items()
+            name: (case, arrays[name].T.astype(float)) for name, case in described["cases"].items()
         }
 
 
@@ -54,7 +53,7 @@ def growing(name: str) -> Iterator[Recorded]:
     """A recording as it grew, point by point; the history is the same object each time."""
     columns, cases = _file()
     case, table = cases[name]
-    config = Config.from_json(_MADE_WITH[case["preset"]].to_json() | Config.renamed(case["changes"]))
+    config = Config.from_json(_MADE_WITH[case["preset"]].to_json() | case["changes"])
     left, history, checkpoint_at = turns(name), History(), 0.0
     history.reward_scale = config.reward_scale
     for row in table:

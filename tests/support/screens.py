@@ -18,7 +18,6 @@ from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
-from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.scene import DigitsScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.learn.list import LearnScene
@@ -73,7 +72,6 @@ SCREENS: dict[str, Make] = {
     "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
     "WhyNotScene": lambda context: WhyNotScene(context, reader(), seven()),
     "DreamScene": lambda context: DreamScene(context, reader()),
-    "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
     "LearnScene": LearnScene,

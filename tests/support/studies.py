@@ -1,14 +1,11 @@
 """Studies of tiny runs for tests."""
 
 import json
-import shutil
 from pathlib import Path
 
 from ai.sweep.plan import Plan, Point, knob_space
-from ai.sweep.study import Asked, FinishedTrial, SeedResult, Study, files_in
-from ai.sweep.trial import Trial
-from ai.training.config import PRESETS, gym_config
-from game.core.assets import MODELS_DIR
+from ai.sweep.study import SeedResult, Study, Trial
+from ai.training.config import gym_config
 
 TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16,), "replay_size": 2000}
 
@@ -16,30 +13,23 @@ TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16
 def tiny_plan(**changes):
     """Return a plan of runs of some tenths of a second each."""
     config = gym_config("CartPole-v1").changed(**TINY)
-    space = knob_space(config, ["learning_rate", "tau"])
-    values = {
-        "kind": "agent", "settings": json.loads(json.dumps(config.to_json())), "space": space, "seeds": (0, 1),
-        "budget": 400, "every": 200, "metric": "return", "search": "tpe", "stop_early": False,
-        "trials": 4, "validation": 5,
-    }  # fmt: skip
-    return Plan(**(values | changes))
+    space = knob_space(config, ["learning_rate", "tau"]) | knob_space(config, ["double"])
+    values = {"decisions": 400, "every": 200, "metric": "return", "seeds": 2, "trials": 4, "validation": 5}
+    return Plan.of(config, space, **(values | changes))
 
 
-def run_alone(plan, asked, parent=None, runs=None):
-    """Train a trial to its end in this process."""
-    trial = Trial(plan, asked, parent, runs)
-    while not trial.done:
-        trial.step()
-    return trial.finish()
+def result(number=0, value=1.0, **changes):
+    """Return a finished trial of such a plan."""
+    params = {"learning_rate": 1e-3 * (number + 1), "tau": 0.01 * (number + 1), "double": number % 2 == 0}
+    seeds = tuple(SeedResult(seed, (Point(200, 0.0, value), Point(400, 0.5, value)), value) for seed in (0, 1))
+    return Trial(**({"number": number, "params": params, "value": value, "seconds": 1.0, "seeds": seeds} | changes))
 
 
-def finished_study(folder, trials=2, **changes):
-    """Make a study with some finished trials, without Ray."""
-    plan = tiny_plan(**changes)
-    study = Study.create(folder, plan)
-    for number in range(trials):
-        params = {"learning_rate": 1e-3 * (number + 1), "tau": 0.01 * (number + 1)}
-        study.record(*run_alone(plan, Asked(number, params)))
+def made_study(folder: Path):
+    """Make a study of which two trials of four are finished, without training."""
+    study = Study.create(folder, tiny_plan())
+    study.record(result(0, 5.0), {"seed-0/config.json": b"{}", "seed-1/config.json": b"{}"})
+    study.record(result(1, 7.5), {"seed-0/config.json": b"{}"})
     return study
 
 
@@ -56,36 +46,3 @@ def networks_in(folder: Path):
             if path.suffix != ".npz":  # an archive tells when it was made; its numbers are compared as files
                 found[path.relative_to(folder).as_posix()] = content
     return found
-
-
-def shown_study(folder, trials=9):
-    """Make a study of the lander for a screen, without training: its networks are the one that comes with the game."""
-    space = knob_space(PRESETS["modern"], ["learning_rate", "tau", "optimizer"])
-    plan = Plan(
-        "agent", json.loads(json.dumps(PRESETS["modern"].to_json())),
-        space, (0, 1), 160, 40, "time_to_99", "tpe", True,
-        trials + 3,
-    )  # fmt: skip
-    study = Study.create(folder, plan)
-    shutil.copytree(MODELS_DIR / "lander" / "modern", folder / "seed-0")
-    shutil.move(folder / "seed-0", folder / "run" / "seed-0")
-    runs = files_in(folder / "run")
-    shutil.rmtree(folder / "run")
-    for number in range(trials):
-        share, stopped = 1 - abs(number - 3) / 10, number == trials - 1
-        seeds = tuple(
-            SeedResult(seed, tuple(Point(40 * step, max(0.0, share * step / 4 - 0.02 * seed), 1.0)
-                                   for step in range(1, 5)), 40.0 * (number + 1 + seed), "", 1.0,
-                       {} if stopped or seed else {"success": share})
-            for seed in (0, 1)
-        )  # fmt: skip
-        params = {
-            "learning_rate": 10 ** (-4 + number / 4),
-            "tau": 0.001 * (number + 1),
-            "optimizer": ("adam", "sgd")[number % 2],
-        }
-        trial = FinishedTrial(number, params, 40.0 * (number + 1), 160, stopped, 2.0, seeds)
-        study.record(trial, {} if stopped else runs)
-    study.importance = {"learning_rate": 0.71, "optimizer": 0.12, "tau": 0.03}
-    study.write()
-    return study

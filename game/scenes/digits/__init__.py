@@ -1,1 +1,1 @@
-"""Draw a digit: the pad, what the networks read, why they read it; a quiz against them, and what they dream of."""
+"""Draw a digit: the pad, what the networks read, why they read it, and what they dream of."""

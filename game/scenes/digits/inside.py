@@ -14,13 +14,11 @@ from game.core.scene import push
 from game.digits.cells import CellPicker
 from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
-from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import HUMAN, SMALL, TITLE
-from game.explain.code_listing import draw_listing
+from game.drawing.tokens import HUMAN, TITLE
 from game.input.controls import Command
 from game.scenes.digits.sums import describe_sum, figure
-from game.scenes.digits.unit_walk import UnitWalk, arrays_of, code_of, sentence_of
+from game.scenes.digits.unit_walk import UnitWalk, sentence_of
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
@@ -32,7 +30,6 @@ if TYPE_CHECKING:
 
 _LEAST: Final = 280.0
 _READ, _GIVEN, _TILES, _SEEN = 250.0, 170.0, 76.0, 110.0  # heights of pictures
-_CODE: Final = 340.0
 _MOST_WEIGHTS: Final = 400_000  # of a stage whose weights are shown as pictures
 
 
@@ -41,7 +38,6 @@ class DigitInsideScene(PanelScene):
 
     Attributes:
         walk: the units that are looked at, one of each stage.
-        in_code: whether the code is shown in place of the maps.
 
     """
 
@@ -49,14 +45,13 @@ class DigitInsideScene(PanelScene):
         super().__init__(context)
         self._classifier, self._image = classifier, np.asarray(image, np.float32)
         self.walk = UnitWalk(classifier, self._image)
-        self.in_code, self._seen = False, PaintCache()
+        self._seen = PaintCache()
         self.build()
 
     def actions(self) -> Table:
         return [
             Action(Command.NEXT, lambda: self._choose(self.walk.number + 1), texts.PATCH_ON),
             Action(Command.PREVIOUS, lambda: self._choose(self.walk.number - 1), texts.PATCH_BACK),
-            Action(Command.CHOICES, self._show_code, texts.PATCH_MAPS if self.in_code else texts.PATCH_IN_CODE),
             self.form.goes_back(texts.HINT_BACK),
         ]
 
@@ -66,11 +61,6 @@ class DigitInsideScene(PanelScene):
         if 0 <= number <= len(self.walk.stages) and number != self.walk.number:
             self.walk.choose(number)
             self.build()
-
-    def _show_code(self) -> None:
-        """Show the code, or the maps again."""
-        self.in_code = not self.in_code
-        self.build()
 
     def _look_at(self, place: Place) -> None:
         channel, stage = self.walk.channel, self.walk.stage
@@ -120,10 +110,7 @@ class DigitInsideScene(PanelScene):
         else:
             self._describe_read(left)
         describe_sum(middle, walk)
-        if self.in_code:
-            right.picture(_CODE, self._draw_code)
-            right.aside(lambda: arrays_of(walk))
-        elif not walk.at_answer:
+        if not walk.at_answer:
             self._describe_given(right)
         right.words([(texts.WHY_NOT_WORD, lambda: push("why_not", self._classifier, self._image))])
         self._follow()
@@ -225,12 +212,6 @@ class DigitInsideScene(PanelScene):
             pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
             corner = (box.left + beside * pixel, box.top + above * pixel)
             canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
-
-    def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
-        if found := code_of(self.walk):
-            draw_listing(canvas, box, *found)
-        else:
-            Cursor(box.left, box.top, box.width, canvas.scale, canvas).styled(texts.LESSON_NO_SOURCE, SMALL)
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -13,7 +13,7 @@ from ai.digits.strokes import Canvas as Ink
 from ai.digits.strokes import draw_segments
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, LINE, NIGHT0, Colour
+from game.drawing.tokens import INK, LINE, NIGHT0
 from game.ui.virtual_pointer import PictureRow
 
 SIDE: Final = 520  # units along a side of every pad, whatever its size on the screen
@@ -93,13 +93,13 @@ class DrawingPad:
         """End the stroke, whatever the state of the mouse."""
         self.drawing = False
 
-    def draw(self, canvas: Canvas, colour: Colour = INK) -> None:
+    def draw(self, canvas: Canvas) -> None:
         """Draw the pad and what is on it, in the window's own pixels."""
         area = canvas.rect(*self.rect)
         if self._layer is None or self._sheet.get_size() != area.size:
             self._layer = _Layer(area.size, area.width / SIDE)
             self._sheet = pygame.Surface(area.size, pygame.SRCALPHA)
-            self._sheet.fill((*colour, 0))
+            self._sheet.fill((*INK, 0))
             self._paper = canvas.sheet(*self.rect.size)
             self._lay_ink(self._paper.surface.get_rect())
         changed = self._layer.follow(self._strokes)
@@ -294,9 +294,9 @@ def side_in(width: float) -> float:
     return min(width, _LARGEST)
 
 
-def pen_row(pad: DrawingPad, colour: Colour = INK) -> PictureRow:
+def pen_row(pad: DrawingPad) -> PictureRow:
     """Return the row of a pad, for the mouse and for a virtual pointer."""
     return PictureRow(
         texts.POINTER, side_in, pad.handle_event,
-        lambda canvas, _: pad.draw(canvas, colour), square=True, hold=texts.PEN_HOLD, leave=texts.PEN_LEAVE, pace=_PACE,
+        lambda canvas, _: pad.draw(canvas), square=True, hold=texts.PEN_HOLD, leave=texts.PEN_LEAVE, pace=_PACE,
     )  # fmt: skip

@@ -11,10 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from ai.digits.classifier import DIGITS
-from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stages, stroke_stages
+from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stroke_stages
 from ai.files import brief
 from game.digits.kept import classifier_in
 from game.digits.pictures import Numbers, visible
@@ -45,22 +44,6 @@ def best_two(probabilities: Numbers) -> tuple[int, int]:
     """Return the most probable digit and the next."""
     first, second = np.argsort(-probabilities, kind="stable")[:2].tolist()
     return first, second
-
-
-@dataclass(frozen=True)
-class Switches:
-    """Switches of the preprocessing steps; `ai.digits.preprocessing.stages` says what each means."""
-
-    crop: bool = True
-    fit: bool = True
-    width: bool = True
-    centre: bool = True
-
-    def prepare(self, strokes: Image, canvas: npt.ArrayLike) -> Stages:
-        """Return every stage, from strokes as `ai.digits.preprocessing.redrawn` draws them, or from the canvas."""
-        if self.crop and self.fit and self.width:
-            return stroke_stages(strokes, canvas, centre=self.centre)
-        return stages(canvas, **vars(self))
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +129,6 @@ class LiveReading:
 
     Attributes:
         reader: the networks that could be loaded.
-        switches: the preprocessing steps that are on.
         reading: the latest reading.
         why: (28, 28) what ink says for the chosen network's answer, -1 to 1; None if it could not be loaded.
 
@@ -154,7 +136,7 @@ class LiveReading:
 
     def __init__(self, pad: DrawingPad, chosen: str, on_read: Callable[[], None]) -> None:
         self._pad, self.chosen, self._on_read = pad, chosen, on_read
-        self.reader, self.switches = Reader(), Switches()
+        self.reader = Reader()
         self._seen = -1  # revision of the drawing that was read last
         self._looking: Iterator[None] = iter(())
         self.why: Image | None = None
@@ -200,7 +182,7 @@ class LiveReading:
         deque(self._looking, maxlen=0)
 
     def anew(self) -> None:
-        """Read the current drawing again, by networks or with switches that have changed."""
+        """Read the current drawing again, by networks that have changed."""
         self._seen = -1
         self.catch_up()
 
@@ -212,7 +194,7 @@ class LiveReading:
         self._seen = self._pad.revision
         strokes = redrawn(self._pad.strokes)
         yield
-        seen = self.switches.prepare(strokes, self._pad.ink)
+        seen = stroke_stages(strokes, self._pad.ink)
         self.reading = self.reader.read(seen, self.pair)
         self._on_read()
         yield

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -134,7 +133,6 @@ class DigitsScene(PanelScene):
         left.words([
             (texts.DIGITS_UNDO, self.pad.undo),
             (texts.DIGITS_CLEAR, self.pad.clear),
-            (texts.DIGITS_QUIZ, lambda: self._with_chosen(partial(push, "quiz"))),
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
             (texts.DIGITS_DREAM, self._dream),
         ])  # fmt: skip
@@ -167,8 +165,6 @@ class DigitsScene(PanelScene):
         column.toggle(texts.DIGITS_SEES, self.prepared, self._show_prepared)
         if self.prepared:
             column.picture(_TILE, self._draw_stages)
-            for step, on in asdict(self.live.switches).items():
-                column.toggle(texts.DIGITS_STAGES[step], on, partial(self._switch, step))
 
     def _show_bars(self) -> None:
         self._bars.values, self._bars.best = self.live.bars()
@@ -176,11 +172,6 @@ class DigitsScene(PanelScene):
     def _show_prepared(self, shown: bool) -> None:
         self.prepared = shown
         self.build()
-
-    def _switch(self, step: str, on: bool) -> None:
-        """Switch a step of the preprocessing on or off."""
-        self.live.switches = replace(self.live.switches, **{step: on})
-        self.live.anew()
 
     def _write_answer(self, cursor: Cursor) -> None:
         if self.chosen in self.reading.probabilities:
@@ -210,9 +201,8 @@ class DigitsScene(PanelScene):
         )
 
     def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
-        taken = (True, *asdict(self.live.switches).values())
         reading, tile = self.reading, min(_TILE, box.width / 6)
-        self._stages.draw(canvas, box, (reading, taken), lambda sheet: _paint_stages(sheet, reading, taken, tile))
+        self._stages.draw(canvas, box, reading, lambda sheet: _paint_stages(sheet, reading, tile))
 
     # Networks
 
@@ -311,12 +301,10 @@ def _paint(why: Image, sheet: Canvas) -> None:
     sheet.surface.blit(picture(why, sheet.surface.get_size(), AMBER), (0, 0))
 
 
-def _paint_stages(sheet: Canvas, reading: Reading, taken: tuple[bool, ...], tile: float) -> None:
+def _paint_stages(sheet: Canvas, reading: Reading, tile: float) -> None:
     for number, image in enumerate(reading.stages):
         area = sheet.rect(1.2 * number * tile, 0, tile, tile)
-        stage = _fitted(image, area.width)
-        stage.set_alpha(None if taken[number] else 90)  # an alpha of 255 would take forty times as long
-        sheet.surface.blit(stage, area)
+        sheet.surface.blit(_fitted(image, area.width), area)
         pygame.draw.rect(sheet.surface, LINE, area, 1)
 
 

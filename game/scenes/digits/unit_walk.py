@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from types import FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ai.digits.classifier import DigitClassifier
 from ai.explain.unit_sums import Box, Place, Stage, UnitSum, receptive_field, stages
-from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
-from ai.nn.costs import softmax
+from ai.nn import ActivationLayer, ConvolutionLayer, MaxPoolingLayer
 from game.core import texts
-from game.core.source import Source, source_of
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -117,47 +113,6 @@ class UnitWalk:
         outputs = self.stages[number].outputs
         row, column, channel = map(int, np.unravel_index(int(outputs.argmax()), outputs.shape))
         return row, column, channel
-
-
-def code_of(walk: UnitWalk) -> tuple[Source, int] | None:
-    """Return the code of the stage looked at, and the number of its line that computes the sum; None without source."""
-    function, *line = _function(walk)
-    source = source_of(function)
-    if source is None:
-        return None
-    return source, source.line_of(*line) if line else source.lines[-1][0]
-
-
-def _function(walk: UnitWalk) -> tuple[Any, ...]:
-    """Return the function that computes a stage, and what the line is found by in which it does, if not its last."""
-    if walk.at_answer:
-        return DigitClassifier.probabilities, softmax if walk.logits else np.sum
-    match walk.stage.layer:
-        case ConvolutionLayer():
-            return ConvolutionLayer._convolve, np.matmul
-        case MaxPoolingLayer():
-            return MaxPoolingLayer._maximum, np.maximum, 1
-        case FullyConnectedLayer():
-            return FullyConnectedLayer.predict, np.dot
-        case ActivationLayer(activation=activation):
-            own = activation.function
-            return (own if isinstance(own, FunctionType) and own.__name__ != "<lambda>" else ActivationLayer.predict,)
-    return (type(walk.stage.layer).predict,)
-
-
-def arrays_of(walk: UnitWalk) -> str:
-    """Return what the arrays of that line are in the case at hand; empty where that goes without saying."""
-    match walk.stage.layer:
-        case _ if walk.at_answer:
-            return ""
-        case ConvolutionLayer(filters=filters, outputs=outputs) as layer:
-            return texts.PATCH_CODE["convolution"].format(
-                filters=filters, rows=len(layer.weights), windows=outputs[0] * outputs[1], number=walk.place[2] + 1
-            )
-        case FullyConnectedLayer() as layer:
-            inputs, units = layer.weights.shape
-            return texts.PATCH_CODE["connected"].format(inputs=inputs, units=units, number=walk.place[2] + 1)
-    return ""
 
 
 def sentence_of(walk: UnitWalk) -> str:

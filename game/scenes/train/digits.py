@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -13,7 +13,7 @@ from ai.digits.config import DIGIT_PRESETS
 from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
-from game.core.scene import Transition, push
+from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
@@ -32,9 +32,6 @@ from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer
-
-if TYPE_CHECKING:
-    from ai.digits.classifier import DigitClassifier
 
 FALLEN: Final = 0.15  # drop of the accuracy below its best at which a return to the best is offered
 _HEAD: Final = 172.0  # of the display, for the title and a heading
@@ -146,8 +143,6 @@ class DigitTrainingScene(TrainingScene):
         column.line()
         column.words([
             (texts.LESSON_WHY, self.lessons.ask),
-            (texts.DIGIT_RUN_DREAM, lambda: self._show_kept("dream")),
-            (texts.DIGIT_RUN_QUIZ, lambda: self._show_kept("quiz")),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
 
@@ -205,20 +200,6 @@ class DigitTrainingScene(TrainingScene):
     def _clear(self) -> None:
         self.matrix.set(None)
         self.charts.clear()
-
-    def _show_kept(self, route: str) -> Transition | None:
-        """Let the network that was saved last dream, or be quizzed; if there is none, tell the player."""
-        from ai.digits.classifier import DigitClassifier
-
-        if not self.run.kept:
-            self.context.note(texts.TRAIN_NOTHING)
-            return None
-        try:
-            classifier: DigitClassifier = DigitClassifier.load(self.run.collection.unsaved)
-        except (OSError, ValueError) as error:
-            self.context.note(str(error))
-            return None
-        return push(route, classifier, *([self.matrix.cell[0]] if route == "dream" else []))
 
     # The picture
 

@@ -67,9 +67,8 @@ CASES: list[list[str]] = [
     *([*command, value] for command in ([*TRAIN, "--validation"], [*TRAIN_DIGITS, "--seconds"])
       for value in ("0", *SOME)),
     *([*command, "--seed", value]
-      for command in (TRAIN, TRAIN_DIGITS, EVALUATE, ["copilot-table"]) for value in ("1.5", *SOME)),
-    *([*command, "--episodes", value] for command in (EVALUATE, ["copilot-table"])
-      for value in ("0", *SOME, "1000000000")),
+      for command in (TRAIN, TRAIN_DIGITS, EVALUATE) for value in ("1.5", *SOME)),
+    *([*EVALUATE, "--episodes", value] for value in ("0", *SOME, "1000000000")),
     *([*command, word] for command in (
         [*TRAIN, "--preset"], [*TRAIN_DIGITS, "--preset"], [*EVALUATE, "--spawn"], ["physics", "--exhibit"])
       for word in WORDS),
@@ -79,10 +78,10 @@ CASES: list[list[str]] = [
     *([*command, "--output", path] for command in (TRAIN, TRAIN_DIGITS) for path in PATHS),
     *([*command, path] for path in UNREADABLE for command in (
         ["train", "--decisions", "100", "--resume"], ["train-digits", "--resume"], ["evaluate", "--model"],
-        ["evaluate-digits", "--model"], ["copilot-table", "--model"])),
+        ["evaluate-digits", "--model"])),
     *(["--user-dir", path, "physics"] for path in ("", "/", "loop", "a\0b", "\ud800")),
     *([*command, argument]
-      for command in ([], ["train"], ["evaluate"], ["train-digits"], ["physics"], ["copilot-table"])
+      for command in ([], ["train"], ["evaluate"], ["train-digits"], ["physics"])
       for argument in ("--nonsense", LONG, "\ud800")),
     ["--windowed", "--fullscreen"], ["train"], ["train-digits"], ["evaluate"], ["evaluate-digits"],
 ]  # fmt: skip
@@ -218,7 +217,7 @@ def test_a_terminal_that_knows_few_letters_ends_no_command(encoding, tmp_path, r
     assert main(["evaluate", "--model", f"no {STRANGE}"]) == 1
     assert main(["train", "--output", "x", "--decisions", "1", "--preset", STRANGE]) == 1
     assert "--preset is one of" in terminal[1].shown
-    for command in ("train", "evaluate", "train-digits", "evaluate-digits", "copilot-table", "physics"):
+    for command in ("train", "evaluate", "train-digits", "evaluate-digits", "physics"):
         with pytest.raises(SystemExit, match="0"):
             main([command, "--help"])
 

@@ -1,10 +1,9 @@
-"""The commands sweep and study: one sentence for what makes no sense, before anything begins."""
+"""The command sweep: one sentence for what makes no sense, before anything begins."""
 
 import json
 import socket
 import sys
 from importlib.util import find_spec
-from threading import Thread
 from typing import Any
 
 import pytest
@@ -12,12 +11,15 @@ import pytest
 from ai.sweep import cluster
 from ai.sweep.study import Study
 from main import main
-from tests.support.studies import shown_study, tiny_plan
+from tests.support.studies import made_study, tiny_plan
 
 
 @pytest.fixture
 def study(tmp_path):
-    return shown_study(tmp_path / "user" / "studies" / "mine")
+    return made_study(tmp_path / "user" / "studies" / "mine")
+
+
+NOWHERE = ("", " ", ".", "..", "a\0b", "a\nb", "/")
 
 
 def refused(capsys, *arguments):
@@ -47,11 +49,13 @@ def test_what_makes_no_sense_is_one_sentence_and_nothing_is_written(tmp_path, ca
         (["--space", "no such file.json"], "no such file"),
         (["--trials", "0"], "--trials"),
         (["--seeds", "-1"], "--seeds"),
-        (["--search", "population", "--knobs", "n_step"], "n_step"),
-        (["--search", "population", "--knobs", "tau", "--trials", "7"], "multiple"),
+        (["--knobs", ""], "--knobs"),
+        (["--knobs", "tau,,"], "--knobs"),
+        (["--knobs", ",tau"], "--knobs"),
         (["--set", "n_step=many"], "n_step"),
         (["--digits", "--env", "CartPole-v1"], "--env"),
         (["--resume"], "no study"),
+        *((["--study", name], "--study" if name.strip(".") == "" and name else "folder") for name in NOWHERE),
     ):
         assert named in refused(capsys, "--user-dir", tmp_path / "user", "sweep", "--study", "new", *options), options
     assert not (tmp_path / "user" / "studies" / "new").exists()
@@ -104,54 +108,22 @@ def test_what_a_study_lists_of_trials_starts_no_code_either(evil, tmp_path, caps
 
 
 @pytest.mark.skipif(find_spec("ray") is None, reason="needs the extra: sweep")
-def test_an_address_where_no_cluster_answers_is_one_sentence_at_once(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(cluster, "_PATIENCE", 0.2)
-    silent, website = socket.create_server(("127.0.0.1", 0)), socket.create_server(("127.0.0.1", 0))
-
-    def refuse():
-        with website.accept()[0] as link:
-            link.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
-
-    thread = Thread(target=refuse)
-    thread.start()
-    with silent, website:
-        free = socket.create_server(("127.0.0.1", 0))
-        addresses = {f"127.0.0.1:{each.getsockname()[1]}": said for each, said in (
-            (silent, "no cluster answers"), (website, "no head of a Ray cluster"), (free, "no cluster answers"),
-        )}  # fmt: skip
-        free.close()
-        addresses |= {"here": "HOST:PORT", "local": "HOST:PORT", "a:b": "HOST:PORT", "127.0.0.1:99999": "no cluster",
-                      "no.such.host.invalid:1": "no cluster", f"{'x' * 70}:1": "no cluster"}  # fmt: skip
-        for number, (address, said) in enumerate(addresses.items()):
-            place = tmp_path / str(number)
-            printed = refused(capsys, "sweep", "--study", f"{place}/", "--trials", 2, "--address", address)
-            assert said in printed, address
-            assert not place.exists(), "nothing has begun"
-        thread.join()
+def test_an_address_where_no_cluster_answers_is_one_sentence_at_once(tmp_path, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        nobody = f"127.0.0.1:{free.getsockname()[1]}"
+    addresses = {nobody: "no cluster answers", "here": "HOST:PORT", "local": "HOST:PORT", "a:b": "HOST:PORT",
+                 "127.0.0.1:99999": "no cluster", "no.such.host.invalid:1": "no cluster",
+                 f"{'x' * 70}:1": "no cluster"}  # fmt: skip
+    for number, (address, said) in enumerate(addresses.items()):
+        place = tmp_path / str(number)
+        assert said in refused(capsys, "sweep", "--study", f"{place}/", "--trials", 2, "--address", address), address
+        assert not place.exists(), "nothing has begun"
 
 
-def test_a_study_is_printed_as_a_table_as_json_and_as_a_page_that_needs_nothing_else(study, tmp_path, capsys):
-    command = ["--user-dir", str(tmp_path / "user"), "study", "mine"]
-    assert main([*command, "--html", str(tmp_path / "page.html")]) == 0
-    table = capsys.readouterr().out
-    assert "9 of 12 trials" in table
-    assert str(study.run_folder(study.best(), 0)) in table
-    assert main([*command, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["best"] == 0
-    page = (tmp_path / "page.html").read_text()
-    assert page.count("<svg") >= 4
-    assert not [word for word in ("<script", "http:", "https:", "src=", "@import") if word in page]
-
-
-def test_a_page_shows_names_of_folders_as_text(tmp_path, capsys):
-    shown_study(tmp_path / "user" / "studies" / "<b>mine<")
-    page = tmp_path / "page.html"
-    assert main(["--user-dir", str(tmp_path / "user"), "study", "<b>mine<", "--html", str(page)]) == 0
-    capsys.readouterr()
-    assert "<b>mine<" not in page.read_text()
-    assert "&lt;b&gt;mine&lt;" in page.read_text()
-
-
-def test_a_study_that_is_not_there_is_one_sentence(tmp_path, capsys):
-    for name in ("", "no such study", "../..", "a\0b"):
-        assert refused(capsys, "--user-dir", tmp_path, "study", name)
+@pytest.mark.skipif(find_spec("ray") is None, reason="needs the extra: sweep")
+def test_a_study_that_is_whole_prints_its_table_again(study, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(cluster, "joined", None)  # there is nothing to run
+    assert main(["--user-dir", str(tmp_path / "user"), "sweep", "--study", "mine", "--resume", "--trials", "2"]) == 0
+    out = capsys.readouterr().out
+    assert "2 of 2 trials" in out
+    assert str(study.trial_folder(1) / "seed-0") in out

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.cli.copilot import ANYWHERE_MODEL, MODEL
 from ai.copilot import futures
 from ai.copilot.futures import DECISION_STEPS, KEYS, Here, Lookahead, Push
 from ai.lander.anywhere import AnywhereEnv
@@ -18,13 +17,14 @@ from ai.lander.moment import Moment
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.route import Route
 from ai.lander.rules import nearest_action
+from game.core.assets import MODELS_DIR
 
 LOW = (0.5, 4.0, 0.2, -0.8, 0.1, 0.0)  # a start just above the pad
 
 
 @pytest.fixture(scope="module")
 def agent():
-    return DeepQAgent.load(MODEL)
+    return DeepQAgent.load(MODELS_DIR / "lander" / "modern")
 
 
 def low(frame_skip=1, start=LOW, **rules):
@@ -47,7 +47,7 @@ def fly(env, plan):
 
 
 def test_a_plan_flies_again_bit_for_bit_wherever_it_was_made(agent):
-    anywhere = DeepQAgent.load(ANYWHERE_MODEL)
+    anywhere = DeepQAgent.load(MODELS_DIR / "lander" / "anywhere")
     missions = {name: (anywhere, MISSIONS[name].begin()) for name in ("wind", "ferry")}
     plain = {"moon": (agent, low()), "turned": (agent, low(start=(1.0, 5.0, -0.5, -0.5, 0.4, 0.3)))}
     for name, (pilot, env) in {**plain, **missions}.items():
@@ -80,7 +80,7 @@ def test_a_plan_made_in_mid_touch_takes_over_the_contacts(agent):
 
 
 def test_landers_of_many_worlds_are_flown_as_each_would_be_alone():
-    anywhere = DeepQAgent.load(ANYWHERE_MODEL)
+    anywhere = DeepQAgent.load(MODELS_DIR / "lander" / "anywhere")
     env = AnywhereEnv(6, 4, "near", frame_skip=1)
     env.reset()
     plans = Lookahead(anywhere).plans(Moment.of(env), [(slot, (KEYS[3],)) for slot in range(6)])

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.cli.copilot import MODEL
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.futures import KEYS, Future, Here, Lookahead, Plan, Push
 from ai.copilot.guardian import Guardian, decisions_of
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
+from game.core.assets import MODELS_DIR
 
 HERE = Here(0, 1.62, (0.0,) * 6)
 COAST, LEFT, RIGHT, MAIN, MAIN_LEFT, MAIN_RIGHT = KEYS
@@ -27,7 +27,7 @@ STARTS = (
 
 @pytest.fixture(scope="module")
 def agent():
-    return DeepQAgent.load(MODEL)
+    return DeepQAgent.load(MODELS_DIR / "lander" / "modern")
 
 
 def plan(*pushes, begin=0):

@@ -175,19 +175,13 @@ def test_any_canvas_gives_an_image():
     assert max(spans(dot, ink=0.5)) <= 14, "a dot is not blown up to fill the box"
 
 
-def test_each_stage_can_be_left_out():
+def test_each_stage_is_kept():
     canvas = seven(at=(20, 300), scale=1.0)
     full = stages(canvas)
     assert full.drawn.shape == (520, 520)
     assert full.cropped.shape == pytest.approx((186, 126), abs=2)
     assert full.fitted.shape == full.thinned.shape == (20, 20)
     np.testing.assert_array_equal(full.centred, preprocess(canvas))
-    naive = stages(canvas, crop=False, fit=False, width=False, centre=False).centred
-    np.testing.assert_allclose(naive[20:, 10:].sum(), 0, atol=1e-6)  # low on the left, as it was drawn
-    assert naive[14:, :10].sum() == pytest.approx(canvas.sum() * (28 / 520) ** 2, rel=0.05)
-    assert max(spans(stages(canvas, fit=False).centred)) < 14
-    assert centre_of_mass(stages(canvas, centre=False).centred)[0] < 13.5
-    assert centre_of_mass(stages(canvas, crop=False, width=False).centred) == pytest.approx((14, 14), abs=0.3)
 
 
 def test_images_of_mnist_come_back_nearly_as_they_were(test_part):

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,8 +18,9 @@ from typing import Any
 
 import pytest
 
-from ai.sweep.study import Asked, Files, Study, write_files
-from tests.support.studies import TINY, networks_in, run_alone
+from ai.sweep.study import Study
+from ai.sweep.trial import trained
+from tests.support.studies import TINY
 
 pytestmark = [
     pytest.mark.slow,
@@ -71,11 +73,6 @@ def finished(folder):
     return sorted(path.parent.name for path in folder.glob("trials/[0-9]*/trial.json"))
 
 
-def under_way(folder):
-    """The settings of trials that have begun and are not finished, by number."""
-    return {number: asked.params for number, asked in Study.load(folder).under_way.items()}
-
-
 def wait_for(condition, driver):
     end = time.monotonic() + LONG
     while not (found := condition()):
@@ -124,94 +121,72 @@ def listening(pids):
     return found
 
 
-def assert_as_alone(folder):
-    """Every trial of a study is there once and is what the same settings give without Ray, bit for bit."""
+def assert_whole(folder):
+    """Every trial of a study is there once, and what Ray has brought is what this process trains, bit for bit."""
     study = Study.load(folder)
-    assert sorted(study.trials) == list(range(study.plan.trials))
-    assert study.damaged == []
-    # The runs of each trial; the study forgets the states of members that others went on from.
-    kept: dict[int | None, Files] = {None: {}}
-    for number, trial in sorted(study.trials.items()):
-        parent = None if trial.parent is None else study.trials[trial.parent]
-        alone, runs = run_alone(study.plan, Asked(number, trial.params, trial.parent), parent, kept[trial.parent])
-        kept[number] = runs
-        write_files(runs, folder.parent / f"alone-{number}")
-        assert networks_in(folder.parent / f"alone-{number}" / "seed-1") == networks_in(
-            study.trial_folder(number) / "seed-1"
-        )
-        assert (alone.value, [seed.curve for seed in alone.seeds]) == (trial.value, [s.curve for s in trial.seeds])
-
-
-def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
-    folder = tmp_path / "study"
-    options = ["--search", "population", "--population", "2", "--trials", "4", "--decisions", "400"]
-    with sweep(folder, *NEW, *options, "--address", nodes.address) as driver:
-        ended(driver)
-    assert_as_alone(folder)
-    assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
+    assert (sorted(study.trials), study.damaged) == (list(range(study.plan.trials)), [])
+    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == study.plan.trials
+    number, trial = max(study.trials.items())
+    alone, files = trained(study.plan, number, trial.params)
+    assert replace(alone, seconds=trial.seconds) == trial
+    kept = study.trial_folder(number) / "seed-1" / "online"
+    assert [each.read_bytes() == files[f"seed-1/online/{each.name}"] for each in kept.iterdir()] == [True] * 7
 
 
 def test_without_an_address_nothing_listens_but_on_this_machine_and_no_token_is_written(tmp_path):
     folder, home = tmp_path / "study", tmp_path / "home"
     home.mkdir(mode=0o500)
-    options = [*NEW, "--trials", "2", "--decisions", "400", "--workers", "1"]
-    with sweep(folder, *options, env=os.environ | {"HOME": str(home)}) as driver:
-        wait_for(lambda: finished(folder), driver)
+    with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", env=os.environ | {"HOME": str(home)}) as driver:
+        wait_for(lambda: training_workers(driver.pid), driver)
         opened = listening([driver.pid, *descendants(driver.pid)])
-        ended(driver)
+        out = ended(driver)
     assert opened <= {"0100007F", "0000000000000000FFFF00000100007F"}
     assert len(opened) == 2
-    assert len(finished(folder)) == 2
+    assert "2 of 2 trials" in out
+    assert_whole(folder)
     assert not list(home.iterdir())
 
 
-def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_path):
-    """To the process alone, and to its whole group, as `timeout` does."""
-    folder = tmp_path / "study"
-    options = [*NEW, "--trials", "3", "--decisions", "1200", "--workers", "1"]
-    began = [
-        (lambda driver: descendants(driver.pid), os.kill),  # Ray begins
-        (lambda driver: training_workers(driver.pid), os.kill),
-        (lambda driver: finished(folder), os.killpg),
-    ]
-    for begun, kill in began:
+def _more_than(before, folder, pid):
+    return len(finished(folder)) > before and training_workers(pid)
+
+
+def test_a_signal_loses_no_finished_trial_and_the_study_goes_on(tmp_path):
+    """Ctrl-C as a terminal sends it, to the whole group, and a termination of the process."""
+    folder, options = tmp_path / "study", [*NEW, "--trials", "5", "--decisions", "1200"]
+    for kill, number, code in ((os.killpg, signal.SIGINT, 0), (os.kill, signal.SIGTERM, 143)):
+        before = len(finished(folder))
         with sweep(folder, *options, start_new_session=True) as driver:
-            wait_for(partial(begun, driver), driver)
-            kill(driver.pid, signal.SIGTERM)
+            wait_for(partial(_more_than, before, folder, driver.pid), driver)
+            kill(driver.pid, number)
             out, errors = driver.communicate(timeout=LONG)
-        assert driver.returncode == 143, errors
-        assert "SIGTERM" not in errors
-        assert "--resume" in out
-        options = ["--resume", "--workers", "1"]
+        assert driver.returncode == code, errors
+        assert "Traceback" not in errors
+        assert "to go on: sweep" in out
+        assert len(Study.load(folder).trials) > before
+        options = ["--resume"]
     with sweep(folder, *options) as driver:
         ended(driver)
-    assert_as_alone(folder)
+    assert_whole(folder)
 
 
-def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_change_none(nodes, tmp_path):
-    """Its second node is gone afterwards, which the other tests bear."""
+def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial(nodes, tmp_path):
     folder = tmp_path / "study"
-    with sweep(folder, *NEW, "--trials", "5", "--decisions", "1200", "--address", nodes.address) as driver:
+    with sweep(folder, *NEW, "--trials", "6", "--decisions", "1200", "--address", nodes.address) as driver:
         wait_for(lambda: len(training_workers(nodes.pid)) == 2, driver)
         os.kill(training_workers(nodes.pid)[0], signal.SIGKILL)
         wait_for(lambda: len(finished(folder)) >= 2, driver)
         driver.send_signal(signal.SIGKILL)
     kept = {name: (folder / "trials" / name / "trial.json").stat() for name in finished(folder)}
-    assert 2 <= len(kept) < 5
-    asked = under_way(folder)
-    assert asked
+    assert 2 <= len(kept) < 6
     with sweep(folder, "--resume", "--address", nodes.address) as driver:
-        wait_for(lambda: len(finished(folder)) > len(kept), driver)
+        wait_for(lambda: len(finished(folder)) > len(kept) and len(training_workers(nodes.pid)) == 2, driver)
         nodes.stdin.write("take the second node away\n")
         nodes.stdin.flush()
         assert nodes.stdout.readline().strip() == "gone"
         out = ended(driver)
-    assert "5 of 5 trials" in out
+    assert "6 of 6 trials" in out
     for name, stat in kept.items():
         now = (folder / "trials" / name / "trial.json").stat()
         assert (now.st_ino, now.st_mtime_ns) == (stat.st_ino, stat.st_mtime_ns), "a finished trial was written again"
-    study = Study.load(folder)
-    for number, params in asked.items():
-        assert study.trials[number].params == params, "an interrupted trial has kept its settings"
-    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == 5
-    assert_as_alone(folder)
+    assert_whole(folder)

@@ -11,14 +11,12 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from ai.digits.mnist import load_part
 from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
-from game.core import source, texts
+from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.digits.cells import CellPicker
-from game.scenes.digits import unit_walk as patch_code
 from game.scenes.digits.answer import DigitBars
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.sums import figure
-from game.scenes.digits.unit_walk import code_of
 from game.scenes.digits.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -152,26 +150,6 @@ def test_arrows_move_any_window_and_back(inside: Driver):
         inside.key(pygame.K_ESCAPE)
 
 
-def test_the_code_beside_each_stage_is_that_of_its_layer(inside: Driver, monkeypatch):
-    inside.key(pygame.K_c)
-    walk, found = scene(inside).walk, []
-    for _ in walk.stages:
-        listing, line = code_of(walk) or pytest.fail("no code")
-        found.append(listing.name.rpartition(".")[2])
-        assert dict(listing.lines)[line].strip()
-        inside.frames(2)
-        inside.key(pygame.K_n)
-    assert found == ["_convolve", "_maximum", "_relu", "_convolve", "_maximum", "_relu", "predict", "_relu", "predict"]
-    listing, line = code_of(walk) or pytest.fail("no code")
-    assert "softmax" in dict(listing.lines)[line]
-    words = words_written(monkeypatch)
-    monkeypatch.setattr(patch_code, "source_of", lambda _: None)
-    inside.frames(2)
-    assert code_of(walk) is None
-    assert texts.LESSON_NO_SOURCE.split()[0] in " ".join(words)
-    assert source.source_of(len) is None
-
-
 def strange(kind: str) -> DigitClassifier:
     if kind == "normalised":
         network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(784, 12))
@@ -193,7 +171,6 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
     save_settings(context)
     driver = open_game(DigitInsideScene, strange(kind), nine)
     walk = scene(driver).walk
-    driver.key(pygame.K_c)
     for _ in range(len(walk.stages)):
         driver.frames(1)
         for picker in [*maps(driver), *tiles(driver)]:

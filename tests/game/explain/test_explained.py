@@ -11,7 +11,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import ACTION_NAMES
-from ai.nn.layer import Layer
+from ai.nn import Momentum
 from ai.training.loop import Training
 from game.core import texts
 from game.core.source import source_of
@@ -153,7 +153,7 @@ def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():
     assert not any('"""' in text for _, text in source.lines)
 
 
-@pytest.mark.parametrize("function", [Layer.single_step, Training.advance])
+@pytest.mark.parametrize("function", [Momentum._fill_step, Training.advance])
 def test_remarks_for_tools_are_not_shown(function):
     raw = inspect.getsource(function)
     assert "# noqa" in raw or "# fmt" in raw

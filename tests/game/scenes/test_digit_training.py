@@ -91,13 +91,12 @@ def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
     scene.run.close()
 
 
-def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, monkeypatch):
+def test_a_run_is_named(train: Driver, tmp_path: Path, monkeypatch):
     notes: list[str] = []
     monkeypatch.setattr(train.top.context, "note", notes.append)
     scene = train.top
-    for word in (texts.TRAIN_SAVE, texts.DIGIT_RUN_DREAM, texts.DIGIT_RUN_QUIZ):
-        train.click(train.widget(word).box.center)
-    assert notes == [texts.TRAIN_NOTHING] * 3
+    train.click(train.widget(texts.TRAIN_SAVE).box.center)
+    assert notes == [texts.TRAIN_NOTHING]
     train.key(pygame.K_TAB)
     scene.form.focus(scene.start_button)
     train.key(pygame.K_RETURN)
@@ -107,15 +106,10 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.key(pygame.K_RETURN)
     assert train.top is scene
     kept = tmp_path / "user" / "digits" / "runs" / texts.DIGIT_RUN_NAME.format(preset="Classic")
-    train.wait(lambda: (kept / "config.json").exists() and len(notes) == 4)
+    train.wait(lambda: (kept / "config.json").exists() and len(notes) == 2)
     assert kept.name in notes[-1]
     train.click(train.widget(texts.DIGIT_RUN_STOP).box.center)
     train.wait(lambda: not scene.run.alive and scene.run.kept)
-    train.click(train.widget(texts.DIGIT_RUN_DREAM).box.center)
-    assert train.top_name == "DreamScene"
-    train.key(pygame.K_ESCAPE)
-    train.click(train.widget(texts.DIGIT_RUN_QUIZ).box.center)
-    assert train.top_name == "QuizScene"
 
 
 def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):

@@ -321,7 +321,7 @@ ONLY_AT = {
     },
     at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
     | {"Play", "mission", "daily", "descent", "LogbookScene, with much to list", "MissionsScene, with much to list"}
-    | {"DigitsScene", "DigitInsideScene", "WhyNotScene", "DreamScene", "QuizScene", "QuizScene, read"},
+    | {"DigitsScene", "DigitInsideScene", "WhyNotScene", "DreamScene"},
     in_flight_there_is_one_sentence: IN_FLIGHT,
 }  # fmt: skip
 

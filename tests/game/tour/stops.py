@@ -75,7 +75,6 @@ STOPS = [
         for name in ("LogbookScene", "MissionsScene", "NetworksScene")
     ),
     Stop("NetworksScene", "naming", keys(pygame.K_F2)),
-    Stop("QuizScene", "read", keys(pygame.K_3)),
     Stop("BindingsScene", "binding", keys(pygame.K_RETURN)),
     Stop("WatchScene", "stopped", keys(pygame.K_SPACE)),
     Stop("WatchScene", "touched", keys(pygame.K_SPACE, pygame.K_q, pygame.K_m)),
