@@ -88,7 +88,7 @@ def see(state):
     return np.stack(columns, axis=1).astype(np.float32)
 
 
-# 7. The network: from what is seen to what each action is worth. Grown up: ai/nn/layers.py
+# 7. The network, from what is seen to what each action is worth. Grown up: ai/nn/layers.py
 class Network:
     """Three layers of weighted sums. After the first two, sums are normalised, and those below 0 become 0."""
 
@@ -117,6 +117,7 @@ class Network:
                 values = np.maximum(values, 0)
         return values
 
+    # 8. The way back. Grown up: ai/nn/network.py
     def backward(self, slope):
         """Return the slope of the cost along every parameter, by the chain rule, given that along each output."""
         of_weights, of_biases = [], []
@@ -132,7 +133,7 @@ class Network:
             slope = slope @ self.weights[layer].T
         return of_weights + of_biases
 
-    # 8. From slopes to better parameters: Adam (Kingma and Ba 2015). Grown up: ai/nn/optimizers.py
+    # 9. From slopes to better parameters: Adam (Kingma and Ba 2015). Grown up: ai/nn/optimizers.py
     def step(self, slopes, rate):
         """Take a small step down the mean slope, measured by how large slopes usually are."""
         self.steps += 1
@@ -143,11 +144,11 @@ class Network:
             values[:] -= rate * young * mean / (np.sqrt(square) + 1e-7)
 
 
-# 9. The memory: a film with a row for each step and a column for each lander. Grown up: ai/agent/replay.py
+# 10. The memory, a film with a row for each step and a column for each lander. Grown up: ai/agent/replay.py
 MOMENT = np.dtype([("seen", np.float32, 7), ("action", int), ("pay", np.float32), ("over", bool)])
 
 
-# 10. Deep Q-learning (Mnih et al. 2015). Grown up: ai/agent/agent.py
+# 11. Deep Q-learning (Mnih et al. 2015). Grown up: ai/agent/agent.py
 BATCH = 128
 AHEAD = 8  # steps that are looked up in the film; what comes after them is guessed by the network
 DISCOUNT = 0.985  # what is earned a step later counts so much
@@ -180,13 +181,13 @@ def learn(network, steady, film, rate, rng):
         slow[:] += 0.01 * (fast - slow)
 
 
-# 11. Training. Grown up: ai/training/loop.py
+# 12. Training. Grown up: ai/training/loop.py
 def train(seed, steps=2700, landers=256, tell=print):
     """Return a network that has learned from nothing, in so many steps of so many landers."""
     rng = np.random.default_rng(seed)
     network, steady = Network(rng), Network(rng)  # the second follows the first slowly, and is the better judge
     film = np.zeros((steps, landers), MOMENT)
-    state, age = begin(rng, rng.random(landers) ** 0.5), np.zeros(landers, int)
+    state, age = begin(rng, 1.2 * rng.random(landers) ** 1.4), np.zeros(landers, int)
     endings, told = [], time.process_time()
     for step in range(steps):
         now, left = film[step], 1 - step / steps
@@ -198,7 +199,7 @@ def train(seed, steps=2700, landers=256, tell=print):
         age += 1
         now["over"] = over = landed | lost | (age == LONGEST)
         now["pay"] = pay(before, state, landed, lost)
-        state[:, over] = begin(rng, rng.random(over.sum()) ** 0.5)
+        state[:, over] = begin(rng, 1.2 * rng.random(over.sum()) ** 1.4)
         age[over] = 0
         endings = (endings + landed[over].tolist())[-500:]
         for _ in range(8 if step > AHEAD else 0):
@@ -209,7 +210,7 @@ def train(seed, steps=2700, landers=256, tell=print):
     return steady
 
 
-# 12. The exam. Grown up: ai/run.py
+# 13. The exam. Grown up: ai/cli/evaluate.py
 def examine(network, state):
     """Return which starts the network lands from."""
     landed, lost = judge(state)
@@ -221,7 +222,7 @@ def examine(network, state):
     return landed
 
 
-# 13. One flight in the terminal. Grown up: game/scenes/watch/scene.py
+# 14. One flight in the terminal. Grown up: game/scenes/watch/scene.py
 def show(network, state):
     """Fly from one start, down the terminal: a line every fifth of a second, a metre to each sign."""
     for step in range(LONGEST):
