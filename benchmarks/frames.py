@@ -89,9 +89,9 @@ LIMITS = {"1280x720": (8.0, 50.0), "1920x1080": (8.0, 50.0), "2560x1440": (12.0,
 COVERED = 30  # frames for which a scene below another has been on the screen
 SEVEN = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
 FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
-SHARED: dict[str, Any] = {"assist": 0.6}
-GUARDED: dict[str, Any] = {"assist": 0.4, "copilot": "guardian"}
-PADS: dict[str, Any] = {**SHARED, "copilot": "guardian", "three_pads": True}
+SHARED: dict[str, Any] = {"help": "guide"}
+GUARDED: dict[str, Any] = {"help": "guard"}
+PADS: dict[str, Any] = {**SHARED, "three_pads": True}
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None
         for number in range(flights):
             flight = Flight(int(rng.integers(1 << 30)), agent)
             flight.guard = Guard(flight, ahead)
-            flight.help(dial, "guardian")
+            flight.help(dial)
             found.fly(flight, flight.guard, rng, hands, period, ready=30 if number else 120)
         ahead.close()
         first, every = [ages[0] for ages in ahead.ages if ages], [age for ages in ahead.ages for age in ages]

@@ -81,7 +81,7 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
 SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {
-    "cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True),
+    "cockpit": Settings(help="guide", three_pads=True),
 }
 
 MOVING = "flight"

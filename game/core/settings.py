@@ -12,12 +12,13 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Annotated, Any, Final
 
-from ai.files import Share, Within, parse_json, read_text, sound_fields, take, write_text
+from ai.files import OneOf, Share, Within, parse_json, read_text, sound_fields, take, write_text
 from game.core import texts
 
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
 _LARGEST: Final = 1_000_000  # bytes
+HELP: Final = ("off", "guard", "guide")  # words for how much a network helps, the least first
 PACES: Final = (0.2, 1.0)  # limits of the player's factor for the pace of time
 TOP_RUNG: Final = 10  # of the ladder of starts: there, flights begin anywhere
 _log = logging.getLogger("tranquility")
@@ -40,10 +41,8 @@ class Settings:
     ambience_volume: Share = 0.7
     altitude_volume: Share = 0.0  # volume of the tone that makes height and speed audible; 0 is off
     model: str = ""  # name of the network last chosen to fly; empty for the shipped default
-    assist: Share = 0.0  # assist level of the co-pilot
-    copilot: str = "tolerance"  # mode of the co-pilot, a Mode of ai.copilot.copilot
+    help: Annotated[str, OneOf(HELP)] = "off"  # how early the network steps in
     three_pads: bool = False  # three pads among hills, instead of one on a plain
-    more_flights: bool = False  # whether all choices of flights are shown, and not four
     show_thinking: bool = False  # whether what the network thinks is shown in flight
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     analogue: bool = True  # whether sticks and triggers give a share of thrust, and not all or none

@@ -11,16 +11,14 @@ from ai.flights.recording import Easing
 from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.core.settings import Settings
+from game.core.settings import HELP, Settings
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import sentence, who
 
-GUARDIAN: Final = "guardian"  # the mode of help that goes by futures
 # Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
-HELP: Final = {"off": 0.0, "guard": 0.04, "guide": 0.64}
-OTHER: Final = "other"  # any other place of the dial, or another mode
+ASSISTS: Final = dict(zip(HELP, (0.0, 0.04, 0.64), strict=True))
 TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
-_ASSISTS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are named
+_EASINGS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are named
 # Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
 _OWN_HANDS: Final = frozenset({"toggle_thrust"})
 
@@ -41,12 +39,9 @@ def eased(settings: Settings) -> Easing:
     return Easing(settings.wider_pads, settings.untimed)
 
 
-def help_word(assist: float, mode: str) -> str:
-    """Return the word for help of that assist, 0 to 1, and mode: a key of `HELP`, or `OTHER`."""
-    if assist == 0:
-        return "off"
-    here = [word for word, each in HELP.items() if each == assist and mode == GUARDIAN]
-    return here[0] if here else OTHER
+def help_word(assist: float) -> str:
+    """Return the word for help of that assist, 0 to 1: the most of which it reaches."""
+    return next(word for word in reversed(HELP) if assist >= ASSISTS[word])
 
 
 class Credit:
@@ -93,8 +88,7 @@ class Credit:
         if flight.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
         if flight.shared and flight.copilot:
-            word = help_word(flight.copilot.assist, flight.copilot.mode)
-            return texts.YOU_SHARE[flight.copilot.mode if word == OTHER else word]
+            return texts.YOU_SHARE[help_word(flight.copilot.assist)]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
 
     # What made it easier
@@ -108,7 +102,7 @@ class Credit:
     @property
     def _named(self) -> list[str]:
         used = self._used if self._flight.over else self._used | self._chosen
-        return [name for name in _ASSISTS if name in used]
+        return [name for name in _EASINGS if name in used]
 
     @property
     def _chosen(self) -> set[str]:

@@ -157,17 +157,14 @@ class Flight:
         if self.shares and isinstance(network, QPolicy):
             from ai.copilot.copilot import CoPilot
 
-            self.copilot = CoPilot(network, route=self.route)
+            self.copilot = CoPilot(network, before.assist if before else 0.0, "guardian", route=self.route)
             if before:
-                self.copilot.assist, self.copilot.mode = before.assist, before.mode
                 self.copilot.hold_plans_of(before)
-            else:
-                self.copilot.assist = 0.0
 
-    def help(self, assist: float, mode: str) -> None:
-        """Set the co-pilot's assist, 0 to 1, and its mode, from the next decision on."""
+    def help(self, assist: float) -> None:
+        """Set the co-pilot's assist, 0 to 1, from the next decision on."""
         if self.copilot:
-            self.copilot.assist, self.copilot.mode = assist, type(self.copilot.mode)(mode)
+            self.copilot.assist = assist
 
     def hand_over(self) -> bool:
         """Hand the stick over between person and network. False without a network, or after the flight."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ai.copilot.copilot import Mode, SharedDecision
+from ai.copilot.copilot import SharedDecision
 from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Here, Opening, Push
 from ai.copilot.guardian import decisions_of
 from ai.flights.recording import STEPS, Shares, StickHolder, full
@@ -97,7 +97,7 @@ class Guard:
     def acts(self) -> bool:
         """Whether a guardian goes by futures now; it begins with a decision, every fourth step."""
         copilot = self._flight.copilot
-        if copilot is None or copilot.assist == 0 or copilot.mode is not Mode.GUARDIAN or self.ahead.problem:
+        if copilot is None or copilot.assist == 0 or self.ahead.problem:
             if self.push and not self._flight.over:
                 self.bare = self._seconds, "process" if self.ahead.problem else "off"
             self.push, self._moment = None, -1

@@ -97,7 +97,7 @@ class Challenge:
 
     def dial(self, settings: Settings) -> Settings:
         """Return the settings of help for this challenge alone: it begins without, whatever free flights have."""
-        self._help = self._help or replace(settings, assist=0.0)
+        self._help = self._help or replace(settings, help="off")
         return self._help
 
     # In flight

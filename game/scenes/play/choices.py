@@ -1,27 +1,21 @@
-"""Your flights: help, pads and start of the next flights; all else stands under More."""
+"""Your flights: help, pads and start of the next flights, and whether one sees what the network thinks."""
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from game.core import texts
 from game.core.scene import Pop, Scene
-from game.core.settings import PACES, TOP_RUNG, Settings
-from game.drawing.tokens import INK
-from game.flight.credit import GUARDIAN, HELP, OTHER
+from game.core.settings import HELP, TOP_RUNG, Settings
 from game.input.controls import Command
-from game.scenes.play.help import MODES, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene, StillPicture
-from game.ui.rows import percent
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
-
-_LEAST: Final = 360.0  # points of a column
 
 
 class ChoicesScene(PanelScene):
@@ -52,28 +46,21 @@ class ChoicesScene(PanelScene):
         if self._begun and self._free:
             panel.aside(texts.CHOICES_LATER)
         panel.gap(4)
-        more = self.context.settings.more_flights
-        left, *beside = panel.beside((1, 1) if more else (1,), _LEAST)
-        self._describe_help(left)
+        self._describe_help(panel)
         if self._free:
-            self._describe_starts(left)
-        left.button(texts.CHOICES_LESS if more else texts.CHOICES_MORE, self._switch_more, colour=INK)
-        if more:
-            self._describe_more(left, beside[0])
+            self._describe_starts(panel)
+        key = self.context.controls.word(Command.MODE)
+        shown, aside = self.context.settings.show_thinking, texts.SHOW_THINKING_HELP.format(key=key)
+        panel.toggle(texts.SHOW_THINKING, shown, partial(self._set, "show_thinking"), aside)
 
     def _describe_help(self, column: Column) -> None:
-        """Add the three words of help, and a fourth where the dial is elsewhere."""
-        now = word_of(self._helped)
-        words = [*HELP, *([OTHER] if now == OTHER else [])]
-        labels = [texts.HELP.get(word, texts.CHOICES_MORE) for word in words]
-        column.choice(texts.CHOICES_HELP, labels, words.index(now), lambda index: self._choose_help(words[index]))
-        column.aside(lambda: (self._lack if self._helped.assist else "") or means(self._helped))
+        labels, now = [texts.HELP[word] for word in HELP], HELP.index(self._helped.help)
+        column.choice(texts.CHOICES_HELP, labels, now, self._choose_help)
+        column.aside(lambda: (self._lack if self._helped.help != "off" else "") or texts.HELP_MEANS[self._helped.help])
 
-    def _choose_help(self, word: str) -> None:
-        if word != OTHER:
-            choose(self._helped, word)
+    def _choose_help(self, number: int) -> None:
+        self._helped.help = HELP[number]
         self.context.apply_settings()
-        self.build()
 
     def _describe_starts(self, column: Column) -> None:
         settings, pads = self.context.settings, texts.CHOICES_PADS_WORDS
@@ -81,41 +68,8 @@ class ChoicesScene(PanelScene):
         rung, rungs, aside = max(0.0, settings.rung), (0.0, float(TOP_RUNG)), texts.CHOICES_LADDER_HELP
         column.slider(texts.CHOICES_LADDER, rung, rungs, self._set_rung, step=1.0, figure=_rung, aside=aside)
 
-    def _describe_more(self, left: Column, right: Column) -> None:
-        helped = self._helped
-        ticks = {HELP[word]: texts.HELP[word] for word in (HELP if helped.copilot == GUARDIAN else ["off"])}
-        change = partial(self._help, "assist")
-        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), change, step=0.1, figure=percent, ticks=ticks)
-        index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
-        left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
-        left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])
-        self._share(right, "pace", texts.PACE, PACES, texts.CHOICES_PACE_HELP)
-        key = self.context.controls.word(Command.MODE)
-        self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))
-
     def _set_rung(self, rung: float) -> None:
         self._set("rung", round(rung))
-
-    def _share(self, column: Column, name: str, label: str, limits: tuple[float, float], aside: str) -> None:
-        value = getattr(self.context.settings, name)
-        column.slider(
-            label, value, limits, lambda to: self._set(name, round(to, 2)), step=0.1, figure=percent, aside=aside
-        )
-
-    def _help(self, name: str, value: float | str) -> None:
-        setattr(self._helped, name, round(value, 2) if isinstance(value, float) else value)
-        self.context.apply_settings()
-
-    def _choose_mode(self, index: int) -> None:
-        self._help("copilot", MODES[index])
-        self.build()
-
-    def _switch_more(self) -> None:
-        self._set("more_flights", not self.context.settings.more_flights)
-        self.build()
-
-    def _toggle(self, column: Column, name: str, label: str, aside: str) -> None:
-        column.toggle(label, getattr(self.context.settings, name), partial(self._set, name), aside)
 
     def _set(self, name: str, value: object) -> None:
         setattr(self.context.settings, name, value)

@@ -8,12 +8,10 @@ import numpy as np
 import pygame
 
 from ai.lander.environment import NUM_ACTIONS
-from ai.lander.ground import Ground
 from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL
 from game.explain.landings import Landing, Landings, RecentLandings, draw_landings
 from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.explain.readouts import draw_share
@@ -28,13 +26,10 @@ if TYPE_CHECKING:
 
 _SIZE: Final = (280.0, 388.0)
 _TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
-_PADS_HIGH: Final = 102  # extra height for the rows of three pads
 _LEFT: Final = 20  # left edge of the content, from the panel's corner
 _WIDTH: Final = _SIZE[0] - 40
 _VALUES: Final = 62  # first baseline of the values, from the panel's top
 _WHY: Final = _VALUES + int(HEIGHT) + 20
-_PADS: Final = _WHY + 114  # the first pad's row
-_NAME: Final = 96.0  # for a pad's name, before its bar
 
 
 class CopilotPanel:
@@ -48,13 +43,11 @@ class CopilotPanel:
 
     """
 
-    def __init__(self, ground: Ground) -> None:
+    def __init__(self) -> None:
         self.shown = False
         self.values: QValues | Landings | None = None
         self.why: Why = ("", "", "")
-        self._factors = [pad.factor for pad in ground.pads]
         self._overridden = False  # whether the co-pilot flies something else than was asked for
-        self._likely: list[float] = []  # of each of several pads that it is meant
         self._recent = RecentLandings()
         self._seen: object = None
 
@@ -69,7 +62,7 @@ class CopilotPanel:
         alone = flight.hand is StickHolder.NETWORK and isinstance(flight.network, QPolicy)
         decision = flight.alone if alone else flight.decision if flight.shared else None
         if decision is None and futures:
-            self.shown, self._seen, self._likely = True, None, []
+            self.shown, self._seen = True, None
             self.values = landings_of(futures, flight)
             self.why = ("" if flight.shared else texts.SIX_FUTURES_WHY, "", "")
             return
@@ -78,7 +71,7 @@ class CopilotPanel:
             return
         self._seen = decision
         if decision is flight.alone:
-            self.values, self._likely = QValues.of(flight.alone), []
+            self.values = QValues.of(flight.alone)
             first, second = decision_words(flight.alone)
             self.why = texts.COPILOT_PANEL_ALONE, first, second
         elif flight.decision is not None:
@@ -86,8 +79,6 @@ class CopilotPanel:
 
     def _explain(self, decision: SharedDecision, pad: int) -> None:
         """Show a shared decision, by its values for one of the pads where there are no futures."""
-        likely: list[float] = decision.likely[0].tolist()
-        self._likely = likely if len(likely) > 1 else []
         if decision.held is not None:
             landings = Landings.of(decision)
             self.values, self.why = self._recent.fill(landings), why_by_futures(decision, landings)
@@ -98,9 +89,8 @@ class CopilotPanel:
     def box(self, canvas: Canvas) -> pygame.FRect:
         view, (width, height) = canvas.view, _SIZE
         side = min(_SIDE, 0.03 * view.width)
-        high = height + (_PADS_HIGH if self._likely else 0)
-        top = max(0.0, min(_TOP, view.bottom - high - 90))
-        return pygame.FRect(view.right - side - width, top, width, high)
+        top = max(0.0, min(_TOP, view.bottom - height - 90))
+        return pygame.FRect(view.right - side - width, top, width, height)
 
     def draw(self, canvas: Canvas, share: float | None, network: str = "") -> None:
         """Draw the panel; `share` is the person's of the flight so far, None before its first step."""
@@ -118,28 +108,14 @@ class CopilotPanel:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
         self._draw_why(canvas, left, top + _WHY + 26)
-        if self._likely:
-            self._draw_pads(canvas, left, top + _PADS)
         if share is not None:
-            y = top + _WHY + 104 + box.height - _SIZE[1]
-            draw_share(canvas, left, y, _WIDTH, share, flew(network))
+            draw_share(canvas, left, top + _WHY + 104, _WIDTH, share, flew(network))
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
         title, *lines = self.why
         canvas.text(title, (left, top), colour=NET if self._overridden else INK, room=_WIDTH)
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
-
-    def _draw_pads(self, canvas: Canvas, left: float, top: float) -> None:
-        surest = max(self._likely)
-        canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
-        canvas.explain((left, top - 34, _WIDTH, 92), texts.EXPLAIN_COPILOT_MEANT)
-        for number, (factor, chance) in enumerate(zip(self._factors, self._likely, strict=True)):
-            y, likeliest = top + 22 * number, chance == surest
-            name = texts.PAD_NAMES.get(factor, "")
-            canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
-            bar = (left + _NAME, y - 1.5, _WIDTH - _NAME, 3)
-            canvas.bar(bar, chance, HUMAN if likeliest else mix(FAINT, HUMAN, 0.45))
 
 
 def landings_of(futures: SixFutures, flight: Flight) -> Landings:
@@ -151,14 +127,12 @@ def landings_of(futures: SixFutures, flight: Flight) -> Landings:
 
 def shared_values(decision: SharedDecision, pad: int) -> QValues:
     """Return the Q-values of one lander's shared decision, for one of the pads as the goal."""
-    from ai.copilot.copilot import Mode, guardian_margin
+    from ai.copilot.copilot import guardian_margin
 
     points, asked = decision.points[0, pad], int(decision.pilot[0])
     feasible, allowed = decision.feasible[0], None
-    if asked != COAST and decision.mode is Mode.GUARDIAN:  # a guardian compares the action asked for with its own only
+    if asked != COAST:  # a guardian compares the action asked for with its own only
         feasible = (np.arange(NUM_ACTIONS) != asked) | feasible
         allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
-    elif asked != COAST:
-        allowed = (1.0 - decision.assist) * float(np.ptp(points))
     wish = None if asked == COAST else asked
     return QValues(tuple(points.tolist()), int(decision.action[0]), wish, tuple(feasible.tolist()), allowed)

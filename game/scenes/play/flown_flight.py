@@ -16,7 +16,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
-from game.flight.credit import Credit, eased
+from game.flight.credit import ASSISTS, Credit, eased
 from game.flight.flight import Flight, StickHolder, start_of
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
@@ -28,7 +28,7 @@ from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.ending import FlightEnding, FlownPath
 from game.scenes.play.free import rung_of
 from game.scenes.play.head import Head
-from game.scenes.play.help import MODES, HelpWords
+from game.scenes.play.help import HelpWords
 from game.scenes.play.interventions import Interventions
 from game.scenes.play.wind import draw_wind
 from game.scenes.play.words import why_not_saved
@@ -90,10 +90,8 @@ class FlownFlight:
         self.flight = challenge.flight(seed, self._policy, spawn)
         self.credit = Credit(self.flight, self._settings, challenge)
         self.helped = challenge.dial(self._settings)
-        if self.helped.copilot not in MODES:
-            self.helped.copilot = MODES[0]
         self.help_words, self.interventions = HelpWords(self.helped), Interventions()
-        self.copilot_panel = CopilotPanel(self.flight.env.ground)
+        self.copilot_panel = CopilotPanel()
         self._help()
         self._last_chance: LastChance | None = None
         self.futures: SixFutures | None = None
@@ -177,7 +175,7 @@ class FlownFlight:
     def _help(self) -> None:
         """Set the help of the next step from the settings, and have futures flown ahead once a guardian needs them."""
         flight = self.flight
-        flight.help(0.0 if self.credit.alone else self.helped.assist, self.helped.copilot)
+        flight.help(0.0 if self.credit.alone else ASSISTS[self.helped.help])
         if flight.guard is None and flight.shared and (ahead := self.context.ahead()):
             from game.flight.guard import Guard
 

@@ -18,6 +18,7 @@ from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.readouts import Lamp
+from game.flight.credit import ASSISTS
 from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
 from game.ui.hints import Hint, HintRow, flight_hints, split
@@ -232,7 +233,7 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
 
 def _asides(flown: FlownFlight) -> list[str]:
     flight, challenge, credit = flown.flight, flown.challenge, flown.credit
-    off = flown.helps and flown.helped.assist == 0 < flown.context.settings.assist
+    off = flown.helps and flown.helped.help == "off" != flown.context.settings.help
     lines = [
         texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
         credit.header if credit.alone and not flight.over else "",
@@ -247,6 +248,7 @@ def _asides(flown: FlownFlight) -> list[str]:
 
 def _means(flown: FlownFlight) -> str:
     """Say what the help that is set means now."""
+    if flown.flight.copilot is None:
+        return ""
     guard = flown.flight.guard
-    problem = guard.ahead.problem if guard else texts.FUTURES_NOT_YET
-    return dial_words(flown.helped.assist, flown.flight.copilot, problem)
+    return dial_words(ASSISTS[flown.helped.help], guard.ahead.problem if guard else texts.FUTURES_NOT_YET)

@@ -24,7 +24,6 @@ from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.head import Head, head_of
-from game.scenes.play.help import choose
 from game.scenes.play.keys import card_actions, flight_actions
 from game.scenes.play.sitting import Sitting
 from game.scenes.play.tutorial import Tutorial
@@ -110,7 +109,7 @@ class PlayScene(Scene):
         if event.type in _INTERRUPTS:
             self.flown.hang()
         if self.flown.helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
-            if self.flown.helped.assist > 0 and (lack := self._lack):
+            if self.flown.helped.help != "off" and (lack := self._lack):
                 self.context.note(lack)
             return None
         self._stick.take(event)
@@ -237,7 +236,7 @@ class PlayScene(Scene):
         ]
         if self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
-        words.append((texts.PAUSE_CHOICES if self.challenge.free else texts.PACE, self._choose))
+        words.append((texts.PAUSE_CHOICES if self.challenge.free else texts.CHOICES_HELP, self._choose))
         return [*words, (texts.ASSISTS_OPEN, lambda: push("settings", "flights"))]
 
     def _choose(self) -> Transition | None:
@@ -388,7 +387,7 @@ class PlayScene(Scene):
             self._best = max(self._best, best_alone([entry]))
 
     def _accept_help(self) -> None:
-        choose(self.flown.helped, "guard")
+        self.flown.helped.help = "guard"
         self._sitting.begin()
         self.context.apply_settings()
         self._go_on()

@@ -49,7 +49,7 @@ class Sitting:
             self._landed_before = True
         self._crashes = 0 if landed else self._crashes + (not flown.flight.intact)
         there = flown.flight.copilot is not None and not flown.credit.alone
-        self.offers = self._crashes >= CRASHES and there and flown.helped.assist == 0
+        self.offers = self._crashes >= CRASHES and there and flown.helped.help == "off"
 
     def card(self, card: OutcomeCard) -> OutcomeCard:
         """Return the flight's card, with what is to be said after those before."""

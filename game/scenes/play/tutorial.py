@@ -18,14 +18,13 @@ from ai.lander.missions import FIRST
 from game.core import texts
 from game.core.settings import Settings
 from game.explain.readouts import yours
-from game.flight.credit import GUARDIAN, Credit
+from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import Policy, QPolicy, sentence, who
 from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
 from game.scenes.play.challenge import Challenge
-from game.scenes.play.help import choose
 from game.scenes.play.words import falls_too_fast, leaves_at_the_top, turned
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
@@ -168,16 +167,11 @@ class Tutorial(Challenge):
     @property
     def holds(self) -> bool:
         """The craft goes on to hang until help is turned on, where a lesson asks for that."""
-        return self.lesson.guarded and self._help is not None and self._help.assist == 0
+        return self.lesson.guarded and self._help is not None and self._help.help == "off"
 
     def keeps_stick(self, flight: Flight) -> bool:
         """A guard is shown only to who keeps the stick; what the network has taken over may be taken back."""
         return self.lesson.guarded and not self.through and flight.hand is StickHolder.HUMAN
-
-    def dial(self, settings: Settings) -> Settings:
-        """Return the help of the lessons, on guard and at nothing: the player's own stays where it is."""
-        self._help = self._help or replace(settings, assist=0.0, copilot=GUARDIAN)
-        return self._help
 
     # Progress
 
@@ -240,8 +234,8 @@ class Tutorial(Challenge):
     def remember(self, settings: Settings) -> bool:
         """Store that the tutorial is over, so that it is not offered again, and whether it was flown."""
         before = settings.tutored, settings.first_flown
-        if self.flown and not settings.first_flown and settings.assist == 0:
-            choose(settings, "guard")  # as it is taught next
+        if self.flown and not settings.first_flown and settings.help == "off":
+            settings.help = "guard"  # as it is taught next
         settings.tutored |= self.through or self.flown
         settings.first_flown |= self.flown
         return before != (settings.tutored, settings.first_flown)

@@ -23,7 +23,7 @@ from game.input.bindings import Command, Held
 from game.input.controls import Controls
 
 if TYPE_CHECKING:
-    from ai.copilot.copilot import CoPilot, SharedDecision
+    from ai.copilot.copilot import SharedDecision
     from game.flight.foresight import LastChance
 
 Why = tuple[str, str, str]  # a title, and two lines
@@ -124,17 +124,17 @@ def surroundings(env: LanderEnv) -> Iterator[str]:
 # What a co-pilot does
 
 
-def dial_words(assist: float, copilot: CoPilot | None, problem: str = "") -> str:
-    """Say when a guardian at that assist, 0 to 1, steps in; empty for a co-pilot of another kind.
+def dial_words(assist: float, problem: str = "") -> str:
+    """Say when a guardian at that assist, 0 to 1, steps in; empty if nobody helps.
 
     `problem` says why it goes by points of reward, if it does.
     """
-    from ai.copilot.copilot import Mode, guardian_margin
+    from ai.copilot.copilot import guardian_margin
     from ai.copilot.futures import DECISION_STEPS
     from ai.copilot.guardian import decisions_of
     from engine import DT
 
-    if copilot is None or assist == 0 or copilot.mode is not Mode.GUARDIAN:
+    if assist == 0:
         return ""
     if problem:
         by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
@@ -159,16 +159,12 @@ def is_late(decision: SharedDecision) -> bool:
 
 def why_not_saved(flight: Flight, last_chance: LastChance | None) -> str:
     """Say of a helped flight that was lost why it was not saved, and what would have."""
-    from ai.copilot.copilot import Mode
-
-    guard, copilot = flight.guard, flight.copilot
+    guard = flight.guard
     words = ""
     if guard and guard.bare:
         since, why = guard.bare
         words = texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
-    elif copilot and copilot.mode is Mode.TOLERANCE:
-        words = texts.NOT_SAVED_TOLERANCE
-    elif copilot and (guard is None or guard.ahead.problem):
+    elif flight.copilot and (guard is None or guard.ahead.problem):
         words = texts.NOT_SAVED_BY_VALUES
     if last_chance is None or not words:
         return words

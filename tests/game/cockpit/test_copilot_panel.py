@@ -2,7 +2,6 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.copilot.copilot import Mode
 from ai.lander.environment import Cause, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -25,7 +24,7 @@ class Wavers(Weighs):
 def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over():
     for before in range(8):
         flight = Flight(3, Wavers(), shares=False)
-        copilot_panel = CopilotPanel(flight.env.ground)
+        copilot_panel = CopilotPanel()
         for _ in range(before):
             flight.step(3)
             copilot_panel.follow(flight)
@@ -53,10 +52,10 @@ def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
     shares: bool, monkeypatch: pytest.MonkeyPatch
 ):
     flight = Flight(3, Damaged())
-    flight.help(0.5, Mode.TOLERANCE)
+    flight.help(0.5)
     if not shares:
         flight.hand_over()
-    copilot_panel = CopilotPanel(flight.env.ground)
+    copilot_panel = CopilotPanel()
     flight.step(3)
     copilot_panel.follow(flight)
     drawn = Drawn(monkeypatch)

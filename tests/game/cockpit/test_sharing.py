@@ -4,16 +4,14 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.copilot.copilot import Mode
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.core.settings import Settings, SettingsFile
 from game.flight import networks
-from game.flight.credit import HELP, Credit
+from game.flight.credit import ASSISTS, Credit
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.logbook import Records
 from game.scenes.play.challenge import Challenge
-from game.scenes.play.help import word_of
 from game.scenes.play.interventions import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
@@ -29,7 +27,7 @@ COAST, LEFT, RIGHT, MAIN = range(4)
 class Wants(Weighs):
     """A network that thinks one action is worth 10, another one a bit less, and the others nothing."""
 
-    def __init__(self, best: int = MAIN, good: int = LEFT, worth: float = 6.0) -> None:
+    def __init__(self, best: int = MAIN, good: int = LEFT, worth: float = 9.98) -> None:
         self.values = np.zeros(6, np.float32)
         self.values[[best, good]] = 10.0, worth
         self.asked = 0
@@ -51,7 +49,7 @@ class Falls(Wants):
 
 def shared(network: Wants | None = None, assist: float = 0.5, **kinds: object) -> Flight:
     flight = Flight(1, network or Wants(), **kinds)
-    flight.help(assist, Mode.TOLERANCE)
+    flight.help(assist)
     return flight
 
 
@@ -63,13 +61,8 @@ def keys(seed: int, steps: int) -> list[int]:
 def test_who_flies_is_said_by_the_word_of_the_help():
     flight = Flight(1, Wants())
     credit = Credit(flight, Settings(), Challenge())
-    for word, assist, mode in (
-        ("guard", HELP["guard"], Mode.GUARDIAN),
-        ("guide", HELP["guide"], Mode.GUARDIAN),
-        ("guardian", 0.3, Mode.GUARDIAN),
-        ("tolerance", HELP["guide"], Mode.TOLERANCE),
-    ):
-        flight.help(assist, mode)
+    for word, assist in (("guard", ASSISTS["guard"]), ("guard", 0.3), ("guide", ASSISTS["guide"])):
+        flight.help(assist)
         assert credit.header == texts.YOU_SHARE[word]
 
 
@@ -80,8 +73,8 @@ def test_without_assist_every_action_is_the_persons_and_with_it_bad_ones_are_cha
         assert flight.env.actions[0] == held
         assert flight.flown_by is StickHolder.HUMAN
         assert not flight.overridden
-    flight.help(0.5, Mode.TOLERANCE)
-    flight.step(LEFT)  # worth six tenths of the best
+    flight.help(0.5)
+    flight.step(LEFT)  # worth hardly less than the best
     assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (LEFT, False, StickHolder.HUMAN)
     flight.step(RIGHT)
     assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, True, StickHolder.NETWORK)
@@ -118,7 +111,7 @@ def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_eng
             assert flight.asked == held
             assert flight.env.actions[0] == (LEFT if held == LEFT else MAIN)
     assert flight.hand is StickHolder.HUMAN
-    flight.help(0.0, Mode.TOLERANCE)
+    flight.help(0.0)
     flight.step(COAST)
     assert flight.env.actions[0] == COAST
     assert len(flight.recording.actions) == len(flight.recording.hands) == 101
@@ -200,24 +193,24 @@ def test_help_is_chosen_by_keys_wheel_click_and_stick_and_kept(open_game: Open, 
     for key, word in ((pygame.K_PLUS, "guard"), (pygame.K_PLUS, "guide"), (pygame.K_PLUS, "guide"),
                       (pygame.K_MINUS, "guard"), (pygame.K_MINUS, "off"), (pygame.K_MINUS, "off")):  # fmt: skip
         driver.key(key)
-        assert word_of(settings) == word
+        assert settings.help == word
     driver.post(pygame.MOUSEWHEEL, x=0, y=3)
-    assert word_of(settings) == "guard"
+    assert settings.help == "guard"
     for value in (30000, 0):
         driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, value)
-    assert word_of(settings) == "guide"
+    assert settings.help == "guide"
     boxes = play(driver)._head.help_boxes(driver.app.canvas.reading)
     driver.click(boxes["guard"].center)
     driver.key(pygame.K_ESCAPE)  # in the pause, it has been saved
     driver.app.settings_writer.wait()
     saved = SettingsFile(context.user_dir).load()
-    assert (saved.assist, saved.copilot) == (HELP["guard"], "guardian")
+    assert saved.help == "guard"
     driver.key(pygame.K_ESCAPE)
     assert play(driver).waiting  # none of that has begun the flight
 
 
 def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Open, context: Context, monkeypatch):
-    driver = fly(open_game, context, assist=0.5)
+    driver = fly(open_game, context, help="guide")
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.frames(6)
     flight, shown = play(driver).flight, play(driver).flown.interventions
@@ -244,11 +237,11 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
 
 
 def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_game: Open, context: Context, monkeypatch):
-    driver = fly(open_game, context, assist=0.5)
+    driver = fly(open_game, context, help="guide")
     start_at(driver, 0, 5, 0, -1.0, 0, 0)
     down(driver, pygame.K_RIGHT)
     driver.frames(3)
-    driver.app.context.settings.assist = 0.0
+    driver.app.context.settings.help = "off"
     up(driver, pygame.K_RIGHT)
     start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
     words = words_written(monkeypatch)
@@ -270,18 +263,18 @@ def test_choices_are_made_and_the_waiting_flight_follows(open_game: Open, contex
         driver.click(driver.widget(label)._places[1].center)
     driver.key(pygame.K_ESCAPE)
     settings = driver.app.context.settings
-    assert word_of(settings) == "guard"
+    assert settings.help == "guard"
     assert settings.three_pads
     assert play(driver).waiting
     assert len(play(driver).flight.env.ground.pads) == 3
 
 
 def test_words_that_nobody_knows_in_the_settings_fly_as_usual(open_game: Open, context: Context):
-    save_settings(context, copilot="captain", text_size="enormous", assist=0.5)
+    save_settings(context, help="captain", text_size="enormous")
     driver = opened(open_game, "Play")
     driver.key(pygame.K_UP)
     driver.frames(10)
-    assert play(driver).flight.copilot.mode is Mode.TOLERANCE
+    assert not play(driver).flight.shared
     assert driver.app.canvas.zoom == 1.0
     driver.key(pygame.K_c)
     assert driver.top_name == "ChoicesScene"

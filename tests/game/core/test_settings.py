@@ -187,14 +187,14 @@ def test_a_change_never_waits_for_the_disk(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(os, "fsync", fsync)
     writer, settings = opened(tmp_path)
     for number in range(20):
-        settings.assist = number / 20
+        settings.master_volume = number / 20
         writer.save(settings)
     assert not (tmp_path / FILE_NAME).exists()
-    settings.assist = 1.0  # which was not asked to be saved
+    settings.master_volume = 1.0  # which was not asked to be saved
     slow.set()
     writer.wait()
     assert current_thread() not in threads
-    assert SettingsFile(tmp_path).load().assist == 19 / 20
+    assert SettingsFile(tmp_path).load().master_volume == 19 / 20
 
 
 def test_a_full_disk_is_reported_once_and_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -293,7 +293,7 @@ def test_a_damaged_english_catalogue_is_named(tmp_path: Path, monkeypatch: pytes
 def test_a_text_is_found_by_name_key_and_place():
     assert texts.MENU["play"] == ("Play", "Land by hand, and hand the stick to a network whenever you like.")
     assert texts.OUTCOMES["CRASHED"] == ("Crashed", "")  # as long as the others of its group
-    assert texts.PAD_NAMES[3].startswith("narrow")
+    assert texts.CHOICES_PADS_WORDS[1].startswith("three")
     assert [texts.RUN_SETTINGS.format(preset="Modern", count=count) for count in (1, 2)] == [
         "Modern, 1 setting changed",
         "Modern, 2 settings changed",

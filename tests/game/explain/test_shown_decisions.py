@@ -10,7 +10,6 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision
-from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -114,7 +113,7 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
     agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch
 ):
     flight, drawn = Flight(5, agent), Drawn(monkeypatch)
-    copilot_panel = CopilotPanel(flight.env.ground)
+    copilot_panel = CopilotPanel()
     flight.hand_over()
     while True:
         if len(flight.recording.actions) % DECISION_STEPS == 0:
@@ -132,13 +131,13 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
     assert len(flight.recording.actions) > 200
 
 
-@pytest.mark.parametrize(("mode", "pads"), [*zip(Mode, (1, 3), strict=True)])
+@pytest.mark.parametrize("pads", [1, 3])
 def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
-    agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, mode: Mode, pads: int
+    agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, pads: int
 ):
     flight, drawn = Flight(5, agent, pads=pads), Drawn(monkeypatch)
-    copilot_panel = CopilotPanel(flight.env.ground)
-    flight.help(0.5, mode)
+    copilot_panel = CopilotPanel()
+    flight.help(0.5)
     rng = np.random.default_rng(1)
     titles, held = set(), 0
     while len(flight.recording.actions) < 500:

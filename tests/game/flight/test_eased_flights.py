@@ -138,14 +138,12 @@ def test_only_flights_alone_and_from_anywhere_are_among_the_best():
     assert best_alone([]) == 0
 
 
-def test_a_mission_offers_but_help_and_the_pace(open_game: Open, context: Context):
-    context.settings.more_flights = True
-    context.settings_file.save(context.settings)
+def test_a_mission_offers_but_help_and_what_the_network_thinks(open_game: Open, context: Context):
     game = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"]))
     game.frames(2)
     game.key(pygame.K_c)
     labels = [widget.label for widget in game.top.form.widgets]
-    assert texts.PACE in labels
+    assert texts.CHOICES_HELP in labels
     assert texts.CHOICES_PADS not in labels
 
 

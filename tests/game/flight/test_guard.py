@@ -35,7 +35,7 @@ def agent():
 def guarded(agent, seed=0, assist=GUARD):
     flight = Flight(seed, agent, "rung_1")
     flight.guard = Guard(flight, AtOnce())
-    flight.help(assist, "guardian")
+    flight.help(assist)
     flight.guard.hang(0)
     return flight
 
@@ -141,7 +141,7 @@ def test_it_says_since_when_no_plan_is_held_and_why(agent):
             flight.guard.ahead.known = lambda: dict.fromkeys(KEYS, Future(None))
         fly(flight, lambda _: (0, None), most=48 if why == "looking" else 8)
         if why == "off":
-            flight.help(0.0, "guardian")
+            flight.help(0.0)
         elif why == "process":
             flight.guard.ahead.problem = "no process"
         fly(flight, lambda _: (0, None), most=len(flight.recording.actions) + 1)
@@ -174,7 +174,7 @@ def test_the_process_flies_what_is_asked_for_first_and_then_every_key(agent):
     try:
         flight = Flight(0, agent, "rung_1")
         flight.guard = Guard(flight, ahead)
-        flight.help(GUARD, "guardian")
+        flight.help(GUARD)
         flight.guard.hang(2)
         until = time.monotonic() + 60
         while len(ahead.known()) < len(KEYS) and time.monotonic() < until:
@@ -205,7 +205,7 @@ def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_nam
 def test_a_leg_of_a_descent_is_guarded_along_its_route(agent):
     flight = Flight(0, agent, leg=LegStart())
     flight.guard = Guard(flight, AtOnce())
-    flight.help(GUARD, "guardian")
+    flight.help(GUARD)
     flight.guard.hang(0)
     assert fly(flight, lambda _: (2, None), most=24).guard.safe
     assert land(flight).outcome is Outcome.LANDED

@@ -125,7 +125,7 @@ def test_every_word_of_play_and_its_pause_changes_with_the_language(
 @pytest.fixture
 def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-    context.settings.assist, context.settings.reduced_motion = 0.5, True
+    context.settings.help, context.settings.reduced_motion = "guide", True
     context.settings.show_thinking = True
     context.settings_file.save(context.settings)
     driver = open_game(PlayScene, 4)

@@ -16,7 +16,7 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
-from game.flight.credit import HELP, Credit
+from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.outcomes import outcome_card
@@ -170,7 +170,7 @@ def test_after_three_crashes_without_a_landing_between_one_key_or_a_click_turns_
     assert texts.HELP_OFFER in written
     driver.click(driver.hints()[texts.HELP_HINT])
     settings = driver.app.context.settings
-    assert (settings.assist, settings.copilot) == (HELP["guard"], "guardian")
+    assert settings.help == "guard"
     driver.frames(2)
     assert not play(driver).flight.over
     assert play(driver).flight.shared
@@ -250,7 +250,7 @@ def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: 
     player.hold("left", down=True)
     player.frames(60)
     assert challenge_of(player).lesson.name == "rescue"
-    assert player.app.context.settings.assist == 0
+    assert player.app.context.settings.help == "off"
 
 
 def test_nobody_hands_over_where_a_guard_is_to_be_seen(open_game: Open):

@@ -10,7 +10,6 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.copilot import Mode
 from ai.copilot.futures import KEYS, Lookahead
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.missions import MISSIONS
@@ -45,10 +44,10 @@ def noisy() -> Iterator[int]:
         yield from [1 + 3 * int(rng.random() < 0.15)] * 4
 
 
-def lost(agent: DeepQAgent, mode: Mode, assist: float) -> tuple[Flight, LastChance]:
+def lost(agent: DeepQAgent) -> tuple[Flight, LastChance]:
     """Turn all the way with noisy hands and a help that cannot keep it upright."""
     flight, chance, held = Flight(2, agent), LastChance(agent), noisy()
-    flight.help(assist, mode)
+    flight.help(0.01)
     while not flight.over:
         chance.note(flight.env)
         flight.step(next(held))
@@ -57,21 +56,19 @@ def lost(agent: DeepQAgent, mode: Mode, assist: float) -> tuple[Flight, LastChan
     return flight, chance
 
 
-@pytest.mark.parametrize("mode", list(Mode))
-def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: DeepQAgent, mode: Mode):
-    flight, chance = lost(agent, mode, 0.01)
+def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: DeepQAgent):
+    flight, chance = lost(agent)
     assert flight.wrecked
-    by_rule = {Mode.TOLERANCE: texts.NOT_SAVED_TOLERANCE, Mode.GUARDIAN: texts.NOT_SAVED_BY_VALUES}
     assert chance.seconds is not None
     sentence = texts.LAST_CHANCE.format(seconds=f"{chance.seconds:.1f}")
-    assert why_not_saved(flight, chance) == f"{by_rule[mode]} {sentence}"
+    assert why_not_saved(flight, chance) == f"{texts.NOT_SAVED_BY_VALUES} {sentence}"
 
 
 def test_what_would_have_saved_it_does(agent: DeepQAgent):
-    _, chance = lost(agent, Mode.GUARDIAN, 0.01)
+    _, chance = lost(agent)
     assert chance.seconds is not None
     again, held = Flight(2, agent), noisy()
-    again.help(0.01, Mode.GUARDIAN)
+    again.help(0.01)
     while float(again.env.time[0]) < chance.seconds:
         again.step(next(held))
     [plan] = Lookahead(agent).plans(Moment.of(again.env), [(0, (KEYS[0],))])
@@ -116,7 +113,7 @@ def test_a_landing_that_is_soft_centred_and_upright_is_perfect():
 def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_can_be_given_it(
     open_game, context, written: list[str]
 ):
-    context.settings.assist, context.settings.copilot = 0.6, "guardian"
+    context.settings.help = "guide"
     context.settings_file.save(context.settings)
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
     driver.frames(2)
@@ -125,7 +122,7 @@ def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_c
     driver.key(pygame.K_PLUS)
     driver.frames(2)
     assert play(driver).flight.shared
-    assert driver.app.context.settings.assist == 0.6
+    assert driver.app.context.settings.help == "guide"
     driver.key(pygame.K_r)
     assert play(driver).flight.shared  # for this mission it stays
 

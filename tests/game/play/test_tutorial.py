@@ -231,7 +231,7 @@ def test_who_rises_while_braking_is_asked_to_let_go_and_who_has_tipped_over_to_t
 
 def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context):
     driver = open_game(MenuScene)
-    context.settings.assist = 1.0
+    context.settings.help = "guide"
     driver.app.scenes.apply(Push(PlayScene(driver.app.context, 0, challenge=Tutorial())))
     driver.key(pygame.K_n)
     driver.key(pygame.K_LEFT)

@@ -73,11 +73,11 @@ SCENES: dict[str, Callable[[Context], PlayScene]] = {
 FREE: dict[str, dict[str, object]] = {
     "three pads": {"three_pads": True},
     "slow": {"pace": 0.5},
-    "guarded": {"assist": 0.7, "copilot": "guardian"},
-    "guarded, three pads": {"assist": 0.7, "copilot": "guardian", "three_pads": True},
+    "guided": {"help": "guide"},
+    "guided, three pads": {"help": "guide", "three_pads": True},
 }
 WAYS = ("by hand", "hands off", "handed over", "handed over and back", "dial to and fro")
-MORE: tuple[dict[str, object], ...] = ({}, {"assist": 0.3}, {"assist": 1.0}, {"pace": 0.5})
+MORE: tuple[dict[str, object], ...] = ({}, {"help": "guard"}, {"help": "guide"}, {"pace": 0.5})
 # Every way of flying a free flight with help and a mission without; all else in one way each, turn and turn about.
 STATES = [("free", MORE[1], way) for way in WAYS] + [("mission", {}, way) for way in WAYS[1:]]
 REST = [("free", more) for more in FREE.values()]
@@ -199,7 +199,7 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
 
 @pytest.mark.parametrize("network", [OnlyFlies(), None])
 def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, monkeypatch, network: object):
-    save_settings(context, assist=0.6)
+    save_settings(context, help="guide")
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", network, "it is gone"))
     reading = Reading(open_game(PlayScene, 4), monkeypatch)
     reading.check(3)
@@ -211,7 +211,7 @@ def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, m
 
 
 def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, context: Context, monkeypatch):
-    reading = begin(open_game, context, monkeypatch, "daily", {"assist": 0.8})
+    reading = begin(open_game, context, monkeypatch, "daily", {"help": "guide"})
     driver = reading.driver
     driver.key(pygame.K_TAB)
     assert driver.said == texts.FLOWN_ALONE
@@ -223,10 +223,10 @@ def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, conte
 
 def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context, monkeypatch):
     for helped in (True, False):
-        reading = begin(open_game, context, monkeypatch, "free", {"assist": 0.5 * helped})
+        reading = begin(open_game, context, monkeypatch, "free", {"help": "guide" if helped else "off"})
         reading.driver.key(pygame.K_c)
         words = " ".join(reading.page(2).words)
-        assert ("and it flies" in words) is ("you fall" not in words) is helped
+        assert (texts.HELP_MEANS["guide"] in words) is ("you fall" not in words) is helped
         reading.driver.keys(*[pygame.K_LEFT if helped else pygame.K_RIGHT] * 3)
         words = " ".join(reading.page(2).words)
         assert (texts.HELP_MEANS["guide"] in words) is ("you fall" not in words) is not helped
@@ -246,7 +246,7 @@ def test_a_change_after_the_end_changes_nothing_of_what_was_flown(open_game: Ope
     reading.driver.key(pygame.K_UP)
     end(reading.driver, Outcome.LANDED)
     before = reading.check(70)
-    for name, value in {"assist": 1.0, "pace": 0.5}.items():
+    for name, value in {"help": "guide", "pace": 0.5}.items():
         setattr(reading.driver.app.context.settings, name, value)
     after = reading.check(4)
     assert (after.flew, after.counts) == (before.flew, before.counts) == (set(), set()), "nobody but you"

@@ -14,7 +14,6 @@ from ai.pilots import shelf
 from ai.pilots.own import OwnPilot
 from game.core import texts
 from game.flight import own
-from game.scenes.play.help import choose
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch import pilots
 from game.scenes.watch.pilots import PilotsScene
@@ -214,14 +213,14 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     assert isinstance(play, PlayScene)
     assert play.network.name == "pilot.py"
     assert play.flight.copilot is None  # it has no values to share the stick by
-    choose(context.settings, "guard")
+    context.settings.help = "guard"
     reading = Reading(driver, monkeypatch)
     driver.key(pygame.K_c)
     reading.page(2)
     assert "pilot.py can fly, but cannot help you" in " ".join(reading.words)
     driver.unseen = False
     driver.key(pygame.K_ESCAPE)
-    choose(context.settings, "off")
+    context.settings.help = "off"
     driver.wait(lambda: context.pilot and context.pilot.ready, 60)
     driver.key(pygame.K_TAB)
     driver.wait(lambda: play.flight.over, 60)
