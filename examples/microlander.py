@@ -182,7 +182,7 @@ def learn(network, steady, film, rate, rng):
 
 
 # 12. Training. Grown up: ai/training/loop.py
-def train(seed, steps=2700, landers=256, tell=print):
+def train(seed, steps=3600, landers=256, tell=print):
     """Return a network that has learned from nothing, in so many steps of so many landers."""
     rng = np.random.default_rng(seed)
     network, steady = Network(rng), Network(rng)  # the second follows the first slowly, and is the better judge
