@@ -30,6 +30,7 @@ class LearnScene(PanelScene):
         self._list: ListRow | None = None
         self._choose_last()
         self.build()
+        assert self._list
         self.form.focus(self._list)
 
     def _choose_last(self) -> None:

@@ -18,7 +18,7 @@ from game.ui.listing import ListRow
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 
-_PART: Final = re.compile(r" *# (\d+)\. .*Grown up: (\S+)$")
+_PART: Final = re.compile(r" *# (\d+)\. .+: (\S+)$")  # its number, and its module
 _SHARES, _LEAST, _APART = (1.0, 3.2), 200.0, 36.0  # of the columns of parts and of code
 _AROUND, _PITCH = 180.0, 28.0  # points above and below the list, and of a row of it
 # Where each part can be seen grown up, in their order: a chapter, or a screen.
