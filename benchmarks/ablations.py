@@ -1,6 +1,6 @@
 """What each part of the modern recipe is worth: the same training with one thing changed at a time.
 
-    python -m benchmarks.ablations [--seeds 3] [--decisions 250000] [--only NAME ...] [--workers N]
+    python -m benchmarks.ablations [--seeds 3] [--decisions 250000] [--only NAME ...]
 
 Every variant trains on the same seeds for the same number of decisions, so that a busy machine changes
 nothing but the seconds. Each is flown greedily from 300 random spawns every 25,000 decisions; the table gives the
@@ -26,7 +26,6 @@ from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import VALIDATION_SEED, evaluate
-from benchmarks.pool import results
 
 EVERY = 25_000
 FLIGHTS = 300
@@ -74,9 +73,8 @@ def curve(config: Config, seed: int, decisions: int) -> tuple[list[float], float
     return landed, spent
 
 
-def trained(asked: tuple[str, int, int]) -> tuple[list[float], float]:
+def trained(name: str, seed: int, decisions: int) -> tuple[list[float], float]:
     """The curve of a variant, a seed and a number of decisions."""
-    name, seed, decisions = asked
     return curve(replace(PRESETS["modern"], **VARIANTS[name]), seed, decisions)
 
 
@@ -96,7 +94,6 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--decisions", type=int, default=250_000)
     parser.add_argument("--only", nargs="+", choices=VARIANTS, default=list(VARIANTS))
-    parser.add_argument("--workers", type=int, default=1)
     arguments = parser.parse_args()
     print(
         f"Python {platform.python_version()}, NumPy {np.__version__}; {arguments.seeds} seeds,"
@@ -104,10 +101,8 @@ def main() -> None:
     )
     print("| | 95 % after | 99 % after | mean of the curve | at the end | worst seed | CPU s |")
     print("|---|---|---|---|---|---|---|")
-    asked = [(name, seed, arguments.decisions) for name in arguments.only for seed in range(arguments.seeds)]
-    done = dict(zip(asked, results(trained, asked, arguments.workers), strict=True))
     for name in arguments.only:
-        runs = [done[name, seed, arguments.decisions] for seed in range(arguments.seeds)]
+        runs = [trained(name, seed, arguments.decisions) for seed in range(arguments.seeds)]
         curves = [landed for landed, _ in runs]
         final = [landed[-1] for landed in curves]
         print(

@@ -72,7 +72,7 @@ from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
 from game.scenes.train.scene import TrainScene
-from game.scenes.watch.scene import COUNTS, WatchScene
+from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import landscape
@@ -155,20 +155,16 @@ def rows() -> dict[str, Row]:
             lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
-        **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
-        "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
-        "watch, map of scores": Row(
-            lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
-        ),
-        "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch": Row(lambda context: WatchScene(context, seed=4)),
+        "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
+        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
+        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
             for key in PATH
         },
         "physics, contacts": Row(heap, (pygame.K_c,)),
-        **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
-        "physics, measuring": Row(lambda context: plotted(context, "heap", measuring=True)),
         "physics, one step": Row(
             lambda below: PhysicsStepScene(below.context, below.exhibit),
             (pygame.K_PERIOD,),
@@ -196,15 +192,6 @@ def rows() -> dict[str, Row]:
         "train, split": Row(_split),
         "digittraining": of_tour("DigitTrainingScene", (pygame.K_RETURN,)),
     }
-
-
-def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> PhysicsScene:
-    """Open the gallery with the plot of law and measurement; `measuring` its whole range at once."""
-    scene = PhysicsScene(context, exhibit)
-    scene.toggle_plot()
-    if measuring:
-        scene.measure()
-    return scene
 
 
 def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassifier]:

@@ -39,7 +39,6 @@ from ai.lander.spawns import CURRICULA
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, evaluate
-from benchmarks.pool import results
 
 VALIDATION_FLIGHTS = 500  # as a run flies them
 STOPPING_FLIGHTS = 2000  # more: of 500, a network that lands 98.5 % lands 99 % once in four looks
@@ -134,12 +133,6 @@ def ours(seed: int, config: Config = PRESETS["modern"]) -> Iterator[Checkpoint]:
         yield spent, training.agent.decisions, training.agent, training.best_agent
 
 
-def raced(asked: tuple[int, Config, float]) -> tuple[list[Kept | None], float]:
-    """Race one of ours, of a seed and settings, for so many seconds."""
-    seed, config, seconds = asked
-    return race(ours(seed, config), seconds, LanderTask(config))
-
-
 class Flyer:
     """Lets stable-baselines3's network fly where ours do."""
 
@@ -200,8 +193,8 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
         f"{share:.0%} of validation after: median (fastest; slowest); of test then: median (least)" for share in SHARES
     )
     print(f"| | {heads} | of test at the end, each seed |\n|---|---|---|---|")
-    asked = [(seed, config, arguments.seconds) for seed in range(arguments.seeds)]
-    runs = results(raced, asked, arguments.workers)
+    task = LanderTask(config)
+    runs = [race(ours(seed, config), arguments.seconds, task) for seed in range(arguments.seeds)]
     mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:
         print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
@@ -241,7 +234,6 @@ def main() -> None:
     parser.add_argument("--runs", type=float, nargs="+", metavar="SECONDS")
     parser.add_argument("--preset", default="modern", choices=PRESETS)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
-    parser.add_argument("--workers", type=int, default=1, help="seeds of ours at once")
     arguments = parser.parse_args()
     config = configured(PRESETS[arguments.preset], arguments.changes)
     versions = [f"Python {platform.python_version()}", f"NumPy {np.__version__}"]

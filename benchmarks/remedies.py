@@ -31,7 +31,6 @@ from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.curves import RecentCurves
-from ai.training.edits import Edit
 from ai.training.hints import Adviser, Hint
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import LanderSession
@@ -53,7 +52,6 @@ TURNS: Final[dict[str, dict[str, Any]]] = {
     "steadiness 1": {"steadiness": 1.0},
     "rates 1 and back": {"learning_rate": 1.0, "final_learning_rate": 1.0},
     "paid for staying away": {"reward_weights.distance": -5.0, "reward_weights.time": 5.0},
-    "edited": {},
 }
 FROM_THE_START: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
     **{name: WEAKENED[name] for name in ("plain_steps", "no_replay", "one_lander")},
@@ -164,9 +162,6 @@ def broken(name: str, base: Path) -> tuple[float, Watched]:
             run.go_on()
         for knob in TURNS[name]:
             run.send("change", knob, getattr(NEAR, knob))
-    if name == "edited":
-        for unit in range(NEAR.hidden[-1]):
-            run.send("edit", Edit(1, unit))
     return before, run
 
 

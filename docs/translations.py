@@ -31,9 +31,7 @@ from pygame import freetype
 from ai.digits.config import DigitConfig
 from ai.lander.rules import ACTION_NAMES
 from ai.training.config import Config
-from game.cli import speak
 from game.core import catalogue
-from tranquility.__main__ import _parser as parser
 
 DOMAINS = (catalogue.DOMAIN, catalogue.AI_DOMAIN)
 CONTROL = "\n"
@@ -83,21 +81,13 @@ def english(folder: Path = catalogue.LOCALE) -> Catalog:
 
 
 def of_ai() -> Catalog:
-    """Return what `ai` says in English and a player reads: names of actions, what knobs are for, and commands' help."""
+    """Return what `ai` says in English and a player reads: names of actions, and what knobs are for."""
     found = Catalog(locale=catalogue.ENGLISH)
     for name in ACTION_NAMES:
         found.add(name, auto_comments=["An action: which engines fire."])
     for config in (Config, DigitConfig):
         for field in fields(config):
             found.add(field.metadata["help"], auto_comments=[f"The knob {field.name}."])
-    own = {str(message.id).partition(" (")[0] for message in template(catalogue.DOMAIN)}
-
-    def gathered(said: str) -> str:
-        if said.partition(" (")[0] not in own:  # the game's own commands speak the language already
-            found.add(said, auto_comments=["Of a command's --help."])
-        return said
-
-    speak(parser(), gathered)
     return found
 
 

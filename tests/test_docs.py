@@ -84,7 +84,7 @@ def test_a_name_that_is_gone_is_found():
 def test_nobody_is_told_to_install_what_the_index_has_under_our_name():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["name"] == "tranquility-lander"
-    assert project["scripts"].keys() == {"tranquility"}
+    assert project["scripts"].keys() == {"tranquility", project["name"]}
     own = {"tranquility", project["name"]}
     wanted = [re.split(r"[\[<>=; ]", need, maxsplit=1)[0] for needs in project["optional-dependencies"].values()
               for need in needs]  # fmt: skip

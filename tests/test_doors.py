@@ -17,7 +17,7 @@ STARTING = {
 }  # fmt: skip
 # Calls that a module makes all the same, and why no file of a stranger's is behind them.
 OPENED = {
-    "ai.files.reading": ({"open", "os.open", "archive.open", "zipfile.ZipFile"}, "the door"),
+    "ai.files.reading": ({"Path(path).open", "np.load", "zipfile.ZipFile"}, "the door"),
     "ai.files.writing": ({"os.open", "temporary.open", "path.open"}, "writes, appends, and waits for the disk"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
     "ai.pilots.child": ({"os.open"}, "the null device"),
@@ -36,7 +36,6 @@ OPENED = {
 }
 STARTED = {
     "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
-    "ai.pilots.process": ({"subprocess.Popen"}, "that process: Python itself"),
     "ai.pilots.shelf": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),

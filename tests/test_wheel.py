@@ -97,10 +97,11 @@ def test_the_metadata_of_a_wheel_leads_nowhere_that_is_not_there(installed: Path
 
 
 def test_commands_of_a_wheel_run_beside_strangers_of_the_same_names(installed: Path, elsewhere: Path):
-    (script,) = (installed / "bin").iterdir()
+    scripts = sorted((installed / "bin").iterdir())
+    assert [script.stem for script in scripts] == ["tranquility", "tranquility-lander"]
     model = installed / "tranquility" / "models" / "lander" / "modern"
-    for command in ((sys.executable, "-m", "tranquility"), (sys.executable, str(script))):
-        told = run(*command, "evaluate", "--model", str(model), "--episodes", "4", "--json",
+    for command in (["-m", "tranquility"], *([str(script)] for script in scripts)):
+        told = run(sys.executable, *command, "evaluate", "--model", str(model), "--episodes", "4", "--json",
                    cwd=elsewhere, env=environment(installed))  # fmt: skip
         assert json.loads(told)["episodes"] == 4
 

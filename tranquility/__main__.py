@@ -45,7 +45,7 @@ def main(argv: list[str] | None = None) -> int:
         limit_threads()
         find_own_folders()
         _open_streams()
-        arguments = _in_the_players_language(_parser()).parse_args(argv)
+        arguments = _parser().parse_args(argv)
         code = _open_game(arguments) if arguments.run is None else int(arguments.run(arguments))
         sys.stdout.flush()  # here, where a failure can still be reported
         return code
@@ -102,17 +102,6 @@ def _parser() -> argparse.ArgumentParser:
     for module in ("game.cli", "ai.cli.train", "ai.cli.evaluate", "ai.cli.sweep"):
         if find_spec(module) is not None:
             import_module(module).add_commands(commands)
-    return parser
-
-
-def _in_the_players_language(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
-    from importlib.util import find_spec
-
-    if find_spec("game.cli") is not None:
-        from game.cli import speak
-        from game.core import texts
-
-        speak(parser, texts.said)
     return parser
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -22,6 +23,7 @@ from ai.files import (
     count_of,
     inside,
     read_arrays,
+    read_as,
     read_json,
     recover_folder,
 )
@@ -94,10 +96,15 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
     return agent
 
 
+@dataclass(frozen=True)
+class _Described:
+    config: dict[str, Any]
+
+
 def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) -> A:
     """Make an agent as the file of settings and counts describes it."""
-    described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, (VERSION,))
-    settings = dict(described["config"])
+    described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, VERSION)
+    settings = read_as(_Described, described).config
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
     features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
     agent = make(features, actions, AgentConfig.from_json(settings))

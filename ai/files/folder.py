@@ -24,7 +24,6 @@ _NEW, _OLD = ".new", ".old"  # ends of the names of folders that are not finishe
 _ASIDE: Final = re.compile(r"\.(.+?)(\.[0-9a-f]{8})?\.(?:new|old)")  # such a name
 _STALE: Final = 3600.0  # seconds after which one that is not finished counts as abandoned
 _DESKTOP: Final = (".DS_Store", "Thumbs.db", "desktop.ini")  # what systems leave wherever a folder was looked at
-_TRIES: Final = 5
 
 
 @dataclass(frozen=True)
@@ -200,13 +199,13 @@ def _checked(target: str | Path, kind: FolderKind) -> Path:
 
 def _put(new: Path, target: Path, kind: FolderKind | None) -> None:
     """Move the target aside, if it is still of its kind, and the new folder into its place."""
-    for left in reversed(range(_TRIES)):
+    for last in (False, True):
         if kind and _checked(target, kind).exists():
             target.rename(beside(target, _OLD))
         try:
             new.rename(target)
         except OSError:  # a reader may have put the old one back meanwhile
-            if not (left and kind and target.exists()):
+            if last or not kind:
                 raise
         else:
             return

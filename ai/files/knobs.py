@@ -6,13 +6,11 @@ A field's metadata hold a sentence of help, its group, its range, and whether it
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import Field, asdict, dataclass, field, fields, is_dataclass, replace
-from sys import float_info
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any, Self
 
-import numpy as np
-
 from ai.files.reading import shown
+from ai.files.schema import field_problems
 
 
 def knob(
@@ -42,14 +40,12 @@ class Knobs:
     """Base class of settings whose fields are all `knob`s; values out of range raise ValueError, which names all."""
 
     def __post_init__(self) -> None:
-        for item in fields(self):  # a number of NumPy's is as good as a plain one, but no file takes it
-            object.__setattr__(self, item.name, _plain(getattr(self, item.name)))
         if problems := self.problems():
             raise ValueError("; ".join(problems))
 
     def problems(self) -> list[str]:
         """Return what is wrong with the values, a sentence each."""
-        return [problem for item in fields(self) if (problem := field_problem(item, getattr(self, item.name)))]
+        return [problem for item in fields(self) if (problem := self.problem_of(item.name, getattr(self, item.name)))]
 
     def unused(self) -> dict[str, str]:
         """Return the fields that change nothing because another one is off or 0, each with that other."""
@@ -66,12 +62,24 @@ class Knobs:
         return {name: value for name, value in self.to_json().items() if value != theirs[name]}
 
     @classmethod
-    def from_json(cls, values: Mapping[str, Any]) -> Self:
+    def problem_of(cls, name: str, value: Any) -> str:
+        """Say what is wrong with a value of a field; empty if nothing is."""
+        if problems := field_problems(cls, name, value):
+            return "; ".join(problems)
+        described = next(item for item in fields(cls) if item.name == name).metadata
+        if described["choices"] and value not in described["choices"]:
+            return f"{name} is one of {', '.join(described['choices'])}, not {shown(value)}"
+        numbers, low, high = value if isinstance(value, tuple) else (value,), described["low"], described["high"]
+        if low is not None and not (numbers and all(low <= number <= high for number in numbers)):
+            return f"{name} lies between {low:g} and {high:g}, not {shown(value)}"
+        return ""
+
+    @classmethod
+    def from_json(cls, values: Any) -> Self:
         """Read what `to_json` wrote; raises ValueError for unknown names and bad values."""
-        if not isinstance(values, Mapping):  # a file may hold anything
+        if not isinstance(values, Mapping):
             raise ValueError(f"settings are values by name, not {shown(values)}")
-        unknown = sorted(set(values) - cls.names())
-        if unknown:
+        if unknown := sorted(set(values) - cls.names()):
             raise ValueError(f"unknown settings: {', '.join(unknown)}")
         return cls(**{name: cls.value_from_json(name, value) for name, value in values.items()})
 
@@ -116,42 +124,6 @@ class Knobs:
         """Return the names of the fields in which `other` differs although a run cannot change them."""
         taken = self.with_live(other)
         return [item.name for item in fields(self) if getattr(taken, item.name) != getattr(other, item.name)]
-
-
-def field_problem(item: Field[Any], value: Any) -> str | None:
-    """Say what is wrong with a field's value, if anything."""
-    name, kind, described = item.name, str(item.type), item.metadata
-    if described["choices"] and value not in described["choices"]:
-        return f"{name} is one of {', '.join(described['choices'])}, not {shown(value)}"
-    if kind == "str" and not isinstance(value, str):
-        return f"{name} is a text, not {shown(value)}"
-    if isinstance(value, bool) != (kind == "bool"):
-        return f"{name} is {'' if kind == 'bool' else 'not '}a yes or no, and was {shown(value)}"
-    several = kind.startswith("tuple")
-    if isinstance(value, tuple) != several:
-        return f"{name} is {'' if several else 'not '}a list of numbers, and was {shown(value)}"
-    numbers = value if isinstance(value, tuple) else (value,)
-    if "int" in kind and not all(isinstance(number, int) and is_number(number) for number in numbers):
-        return f"{name} is {'a list of whole numbers' if several else 'a whole number'}, not {shown(value)}"
-    if described["low"] is not None and not (
-        numbers and all(is_number(number) and described["low"] <= number <= described["high"] for number in numbers)
-    ):
-        return f"{name} lies between {described['low']:g} and {described['high']:g}, not {shown(value)}"
-    return None
-
-
-def is_number(value: object) -> bool:
-    """Whether a value is one finite plain number that a float can hold; a yes or no is none."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and -float_info.max <= value <= float_info.max
-
-
-def _plain(value: Any) -> Any:
-    """Return a number of NumPy's as a plain one, in a tuple or a dataclass as well; all else as it is."""
-    if isinstance(value, tuple):
-        return tuple(map(_plain, value))
-    if is_dataclass(value) and not isinstance(value, type):
-        return replace(value, **{item.name: _plain(getattr(value, item.name)) for item in fields(value)})
-    return value.item() if isinstance(value, np.generic) else value
 
 
 def nearest_preset(config: Knobs, presets: Mapping[str, Knobs]) -> dict[str, Any]:

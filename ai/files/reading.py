@@ -1,9 +1,8 @@
-"""Bounded reading of untrusted files.
+"""One reader for files that anybody may have made.
 
-Nothing that a file claims costs memory or time before it is checked: a reader opens ordinary files only, so that a
-pipe cannot let it wait; looks at the size first; and compares the header of every array with what is expected before
-it makes room for the numbers. What the system refuses, and what is no ordinary file or too large, is an OSError; what
-makes no sense is a ValueError. Messages are short, whatever the file says.
+It takes regular files alone, inside their folder and within a size; JSON with finite numbers, not nested without end;
+arrays without pickled objects, of a shape that is checked. What the system refuses, and what is no regular file or too
+large, is an OSError; what makes no sense is a ValueError. Messages are short, whatever the file says.
 """
 
 import errno
@@ -14,29 +13,22 @@ import re
 import stat
 import sys
 import zipfile
-import zlib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from typing import IO, Any, BinaryIO, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 import numpy.typing as npt
 
 SMALL: Final = 4_000_000  # bytes; what a person may read is smaller
-DEPTH: Final = 32  # lists in lists that a JSON file of ours may have
 MOST: Final = 2**53  # of anything that is counted: up to here, floats know every whole number
-_DIGITS: Final = 40  # of a whole number; a seed of 128 bits has 39
-_DIRECTORY: Final = 1 << 16  # bytes that a zip archive's list of its members may take
-_END: Final = 22  # bytes at the end of a zip archive that say where that list is
+_DEPTH: Final = 32  # lists in lists that a JSON file may have: whatever walks through them later has room
 _HEADER: Final = 1 << 20  # bytes of a file of one array besides its numbers
-_FLAGS: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
-_BROKEN: Final = (EOFError, MemoryError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 
 # Characters that end a line, move the cursor or turn the order of writing around, and show nothing themselves.
 CONTROLS: Final = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
-Expect = Callable[[str, tuple[int, ...], np.dtype[Any]], None]  # raises ValueError for an array not expected
+Expect = Callable[[str, tuple[int, ...], np.dtype[Any]], None]  # raises ValueError for an array that is not expected
 
 
 def brief(text: object, most: int = 200) -> str:
@@ -66,25 +58,22 @@ def problem_in(error: Exception) -> str:
 # Bytes and text
 
 
-@contextmanager
-def _opened(path: str | Path, most: int | None = None) -> Iterator[BinaryIO]:
-    """Open an ordinary file of at most so many bytes for reading; raises OSError for anything else."""
+def _open(path: str | Path, most: int | None = None) -> BinaryIO:
+    """Open a regular file of at most so many bytes for reading; raises OSError for anything else."""
     try:
-        file = open(path, "rb", opener=lambda name, flags: os.open(name, flags | _FLAGS))  # noqa: SIM115
+        said = Path(path).stat()  # before it is opened: a pipe would wait for its writer
     except ValueError as error:
         raise OSError(errno.EINVAL, "no file can have such a name", str(path)) from error
-    with file:
-        said = os.fstat(file.fileno())
-        if not stat.S_ISREG(said.st_mode):
-            raise OSError(errno.EINVAL, "is not an ordinary file", str(path))
-        if most is not None and said.st_size > most:
-            raise _too_large(path, most)
-        yield file
+    if not stat.S_ISREG(said.st_mode):
+        raise OSError(errno.EINVAL, "is not an ordinary file", str(path))
+    if most is not None and said.st_size > most:
+        raise _too_large(path, most)
+    return Path(path).open("rb")
 
 
 def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
     """Return what a file of at most so many bytes holds; raises OSError."""
-    with _opened(path, most) as file:
+    with _open(path, most) as file:
         held = file.read(most + 1)
     if len(held) > most:  # it has grown, or lies about its size as the system's own files do
         raise _too_large(path, most)
@@ -98,7 +87,7 @@ def read_text(path: str | Path, most: int = SMALL) -> str:
 
 def read_end(path: str | Path, most: int) -> str:
     """Return the text at the end of a file, at most so many bytes of it; raises OSError."""
-    with _opened(path) as file:
+    with _open(path) as file:
         file.seek(max(0, file.seek(0, os.SEEK_END) - most))
         return file.read(most).decode(errors="replace")
 
@@ -124,18 +113,14 @@ def read_json(path: str | Path, most: int = SMALL) -> Any:
 
 
 def parse_json(text: str) -> Any:
-    """Return what a JSON text says.
-
-    Raises ValueError for what is no JSON, is nested more deeply than DEPTH, or has numbers that are not finite or
-    endless.
-    """
+    """Return what a JSON text says; raises ValueError for what is none, nested deeply, or has numbers not finite."""
     try:
-        value = _DECODER.decode(text)
+        value = json.loads(text, parse_float=_finite, parse_constant=_finite)
         # In most files there are too few brackets for more than that, so nobody has to look how they are nested.
-        too_deep = text.count("[") + text.count("{") > DEPTH and _depth(value) > DEPTH
+        deep = text.count("[") + text.count("{") > _DEPTH and _depth(value) > _DEPTH
     except RecursionError:
-        too_deep = True
-    if too_deep:
+        deep = True
+    if deep:
         raise ValueError("is nested too deeply")
     return value
 
@@ -145,20 +130,11 @@ def _depth(value: Any) -> int:
     return 0 if parts is None else 1 + max(map(_depth, parts), default=0)
 
 
-def _whole(digits: str) -> int:
-    if len(digits) > _DIGITS:
-        raise ValueError(f"{brief(digits, 20)} is too large a number")
-    return int(digits)
-
-
 def _finite(digits: str) -> float:
     number = float(digits)
     if not math.isfinite(number):
         raise ValueError(f"{brief(digits, 20)} is no finite number")
     return number
-
-
-_DECODER: Final = json.JSONDecoder(parse_int=_whole, parse_float=_finite, parse_constant=_finite)
 
 
 def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
@@ -181,18 +157,53 @@ def number_of(value: Any, least: float = -math.inf) -> float:
 
 
 def read_array(path: str | Path, shape: tuple[int, ...], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
-    """Return the array of an `.npy` file, which is to have this shape and dtype: C-ordered, of this machine.
+    """Return the array of an `.npy` file, which is to have this shape and dtype, in C order.
 
-    Raises OSError, or ValueError if it holds another, or more or fewer bytes.
+    Raises OSError, or ValueError if it holds another.
     """
     wanted, name = np.dtype(dtype), Path(path).name
+    try:
+        array = _load(path, math.prod(shape) * wanted.itemsize + _HEADER)
+    except ValueError as error:
+        raise ValueError(f"{name} {error}") from error
+    if not isinstance(array, np.ndarray):
+        raise ValueError(f"{name} holds several arrays")
+    if (array.shape, array.dtype) != (shape, wanted):
+        held = described(array.shape, array.dtype)
+        raise ValueError(f"{name} holds {held}, and should hold {described(shape, wanted)}")
+    return array.copy(order="C")
 
-    def expect(_: str, held: tuple[int, ...], kind: np.dtype[Any]) -> None:
-        if (held, kind.name) != (shape, wanted.name):
-            raise ValueError(f"{name} holds {described(held, kind)}, and should hold {described(shape, wanted)}")
 
-    with _opened(path, math.prod(shape) * wanted.itemsize + _HEADER) as file:
-        return _read_member(file, name, expect)
+def read_arrays(path: str | Path, most: int, expect: Expect | None = None) -> dict[str, npt.NDArray[Any]]:
+    """Return the arrays of an `.npz` file of at most so many bytes, unpacked, by name.
+
+    `expect` is told the name, shape and dtype of each, and raises ValueError for what should not be there. Raises
+    OSError, or ValueError for what is no such file, or damaged.
+    """
+    arrays = _load(path, most)
+    if isinstance(arrays, np.ndarray):
+        raise ValueError("is no archive of arrays")
+    for name, array in arrays.items() if expect else ():
+        expect(brief(name, 60), array.shape, array.dtype)
+    return arrays
+
+
+def _load(path: str | Path, most: int) -> npt.NDArray[Any] | dict[str, npt.NDArray[Any]]:
+    """Return the array, or the arrays by name, of a file of NumPy's that has at most so many bytes, unpacked as well.
+
+    Raises OSError, or ValueError for anything else.
+    """
+    with _open(path, most) as file:
+        try:
+            if zipfile.is_zipfile(file) and sum(each.file_size for each in zipfile.ZipFile(file).infolist()) > most:
+                raise _too_large(path, most)
+            file.seek(0)
+            held = np.load(file, allow_pickle=False)
+            return held if isinstance(held, np.ndarray) else dict(held)
+        except OSError:
+            raise
+        except Exception as error:  # NumPy and zipfile raise whatever damage leads them to
+            raise ValueError("holds no arrays that can be read, or is damaged") from error
 
 
 def array_like(
@@ -212,61 +223,3 @@ def array_like(
 def described(shape: tuple[int, ...], dtype: np.dtype[Any]) -> str:
     """Describe an array, as in "float32 [9, 128]"."""
     return brief(f"{dtype.name} {list(shape)}", 60)
-
-
-def read_arrays(path: str | Path, most: int, expect: Expect) -> dict[str, npt.NDArray[Any]]:
-    """Return the arrays of an `.npz` file of at most so many bytes, by name.
-
-    `expect` is asked about each by its name, shape and dtype before room is made for it, and raises ValueError for
-    what should not be there. Raises OSError, or ValueError for members that are encrypted, packed in a way that
-    NumPy does not use, there twice, or longer than they say.
-    """
-    try:
-        with _opened(path, most) as file:
-            _check_directory(file)
-            with zipfile.ZipFile(file) as archive:
-                members = archive.infolist()
-                found = {member.filename.removesuffix(".npy"): _unpack(archive, member, expect) for member in members}
-    except _BROKEN as error:
-        raise ValueError(f"is damaged: {brief(error) or type(error).__name__}") from error
-    if len(found) != len(members):
-        raise ValueError("holds two arrays of one name")
-    return found
-
-
-def _check_directory(file: BinaryIO) -> None:
-    """Raise ValueError for an archive that does not end as NumPy's do, or whose list of members is a long one."""
-    size = file.seek(0, os.SEEK_END)
-    file.seek(max(0, size - _END - 20))
-    locator, end = file.read(20), file.read()
-    if size < _END + 20 or end[:4] != b"PK\5\6" or end[-2:] != b"\0\0" or locator[:4] == b"PK\6\7":
-        raise ValueError("is no archive of arrays, or only a part of one")
-    if int.from_bytes(end[12:16], "little") > _DIRECTORY:
-        raise ValueError("holds too many arrays")
-
-
-def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, expect: Expect) -> npt.NDArray[Any]:
-    name = brief(member.filename.removesuffix(".npy"), 60)
-    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise ValueError(f"{name} is packed in an unknown way")
-    with archive.open(member) as file:
-        return _read_member(file, name, expect)
-
-
-def _read_member(file: IO[bytes], name: str, expect: Expect) -> npt.NDArray[Any]:
-    """Read one array in NumPy's format, all that a file holds; see `read_arrays`."""
-    try:
-        version = np.lib.format.read_magic(file)
-        reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}[version]
-        shape, fortran, dtype = reader(file)
-    except OSError:
-        raise
-    except Exception as error:  # a header is Python's own notation, and damage to it can surface as anything
-        raise ValueError(f"{name} begins as no array does: {brief(error, 100)}") from error
-    expect(name, shape, dtype)
-    size = math.prod(shape) * dtype.itemsize
-    held = file.read(size + 1)
-    if len(held) != size:
-        raise ValueError(f"{name} holds {'more' if len(held) > size else 'fewer'} bytes than the {size:,} it says")
-    flat = np.frombuffer(held, dtype) if size else np.empty(0, dtype)
-    return flat.reshape(shape, order="F" if fortran else "C").astype(dtype.newbyteorder("="), order="C")

@@ -1,18 +1,17 @@
 """Checked reading of JSON values: a dataclass says what a file holds, and one message names all that is wrong.
 
 The fields of a dataclass are those of the file. Their types are checked, and so is each rule that `Annotated` adds:
-`Annotated[float, Within(0, 1)]`. A field with a default may be missing, so that files from before it was added can
-still be read. Types may be bool, int, float, str, None, dict, Any, tuples, other such dataclasses, and unions of them.
+`Annotated[float, Within(0, 1)]`. A field with a default may be missing, and one that the dataclass does not have is
+passed over. Types may be bool, int, float, str, None, dict, Any, tuples, other such dataclasses, and unions of them.
 The reasons for this module in place of a library are in docs/adr/0013-one-reader-for-json.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, fields
 from functools import cache, partial
-from itertools import islice
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -81,12 +80,9 @@ Share = Annotated[float, Within(0, 1)]
 Duration = Annotated[float, Within(0, MOST)]  # in seconds
 
 
-def read_as(kind: type[T], values: Any, *, strict: bool = False) -> T:
-    """Return a dataclass from what a JSON file has given; raises ValueError, which names all that is wrong.
-
-    Fields that `kind` does not have are passed over; with `strict`, they are refused, here and in dataclasses within.
-    """
-    right, problems = sound_fields(kind, _named(values), strict=strict)
+def read_as(kind: type[T], values: Any) -> T:
+    """Return a dataclass from what a JSON file has given; raises ValueError, which names all that is wrong."""
+    right, problems = sound_fields(kind, _named(values))
     if problems:
         raise SchemaError(problems)
     return kind(**right)
@@ -106,25 +102,21 @@ def read_lines(kind: type[T], path: Path, most: int) -> tuple[list[T], int]:
     return found, damaged
 
 
-def sound_fields(kind: type, values: Mapping[str, Any], *, strict: bool = False) -> tuple[dict[str, Any], list[str]]:
+def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """Return those fields of a dataclass that a file has given and that are right, and what is wrong with the rest."""
-    known = _fields_of(kind, strict)
+    known = _fields_of(kind)
     problems = [f"{name} is missing" for name, (_, needed) in known.items() if needed and name not in values]
     right, wrong = _sorted_out((name, check, values[name]) for name, (check, _) in known.items() if name in values)
-    problems += wrong
-    if strict:
-        problems += islice((f"{brief(name, 40)} is unknown" for name in values if name not in known), _NAMED)
-    return right, problems
+    return right, problems + wrong
 
 
-def check_header(values: Any, form: str, versions: Collection[int]) -> dict[str, Any]:
-    """Return the values of a file that says it is of this format, in a version that can be read; raises ValueError."""
+def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
+    """Return the values of a file that says it is of this format and version; raises ValueError."""
     if not isinstance(values, dict) or values.get("format") != form:
         raise ValueError(f"does not say that this is a {form!r}")
-    version = values.get("version")
-    if type(version) is not int or version not in versions:
-        known = " and ".join(map(str, versions))
-        raise ValueError(f"format version {shown(version)}; this program reads version {known}")
+    held = values.get("version")
+    if type(held) is not int or held != version:
+        raise ValueError(f"format version {shown(held)}; this program reads version {version}")
     return values
 
 
@@ -144,28 +136,38 @@ def _sorted_out(parts: Iterable[tuple[str, Check, Any]]) -> tuple[dict[str, Any]
     return right, problems
 
 
+def field_problems(kind: type, name: str, value: Any) -> list[str]:
+    """Return what is wrong with a value of a field of a dataclass, by its type."""
+    return _sorted_out([(name, _fields_of(kind)[name][0], value)])[1]
+
+
 @cache
-def _fields_of(kind: type, strict: bool) -> dict[str, tuple[Check, bool]]:
+def _fields_of(kind: type) -> dict[str, tuple[Check, bool]]:
     """Return the check of each field of a dataclass, and whether a file must have the field."""
     hints = get_type_hints(kind, include_extras=True)
     return {
-        each.name: (_check_of(hints[each.name], strict), each.default is MISSING and each.default_factory is MISSING)
+        each.name: (_check_of(hints[each.name]), each.default is MISSING and each.default_factory is MISSING)
         for each in fields(kind)
     }
 
 
-def _check_of(hint: Any, strict: bool) -> Check:
+def _check_of(hint: Any) -> Check:
     """Return the check for a type."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin is Annotated:
-        return partial(_ruled, _check_of(inner[0], strict), inner[1:])
+        return partial(_ruled, _check_of(inner[0]), inner[1:])
     if origin in (Union, UnionType):
-        return partial(_any_of, [_check_of(kind, strict) for kind in inner])
+        return partial(_any_of, [_check_of(kind) for kind in inner])
     if origin is tuple:
-        return partial(_tuple, [_check_of(kind, strict) for kind in inner if kind is not Ellipsis], Ellipsis in inner)
+        return partial(_tuple, [_check_of(kind) for kind in inner if kind is not Ellipsis], Ellipsis in inner)
     if origin is dict:
-        return partial(_table, _check_of(inner[1], strict))
-    return _PLAIN[hint] if hint in _PLAIN else partial(read_as, hint, strict=strict)
+        return partial(_table, _check_of(inner[1]))
+    return _PLAIN[hint] if hint in _PLAIN else partial(_made, hint)
+
+
+def _made(kind: type, value: Any) -> Any:
+    """Check for a dataclass, which may have been made already."""
+    return read_as(kind, vars(value) if isinstance(value, kind) else value)
 
 
 def _ruled(check: Check, rules: tuple[Check, ...], value: Any) -> Any:

@@ -16,7 +16,7 @@ from typing import Annotated, Any, Final, Self
 
 from ai.digits.config import DigitConfig
 from ai.files import Count, OneOf, Seed, Share, Sized, Within, read_as, read_json
-from ai.files.knobs import Knobs, field_problem
+from ai.files.knobs import Knobs
 from ai.training.config import ANYWHERE, LANDER, Config
 
 AGENT, DIGITS = "agent", "digits"  # kinds of run
@@ -192,7 +192,7 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
     for value in dimension.choices or (dimension.low, dimension.high):
-        if problem := field_problem(item, config.value_from_json(name, int(value) if dimension.whole else value)):
+        if problem := config.problem_of(name, config.value_from_json(name, int(value) if dimension.whole else value)):
             raise ValueError(problem)
     return dimension
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from ai.agent.decision import in_points
 from ai.training.curves import RecentCurves
-from ai.training.edits import EDITED
 from ai.training.hints import RULES, returns
 from ai.training.history import PARTS
 
@@ -85,12 +84,6 @@ def _hint(name: str) -> Callable[[RecentCurves], bool]:
 def _stands(run: RecentCurves) -> bool:
     """Whether it has learnt, and does not now."""
     return bool(np.isnan(run.history["loss"][-1]))
-
-
-def _held(run: RecentCurves) -> bool:
-    """Whether it does not learn because it was edited by hand."""
-    edits = [each for each in run.history.setting_changes if each.name == EDITED]
-    return _stands(run) and bool(edits) and bool(edits[-1].after)
 
 
 def _gains(run: RecentCurves, column: str) -> tuple[float, float]:
@@ -185,7 +178,6 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("falls", _falls("mean_return", _RETURN_CHANGE)),
     ),
     "loss": (
-        CaptionRule("held", _held),
         CaptionRule("waits", _stands),
         CaptionRule("explodes", _learning(_hint("loss_explodes"))),
         CaptionRule("peaked", _learning(_below_peak)),

@@ -14,7 +14,7 @@ from ai.agent.config import AgentConfig
 from ai.agent.schedule import exploration, exploration_of_each, importance, learning_rate, linear, target_rate
 from ai.agent.storage import AGENT_FILE
 from ai.files import brief, problem_in, shown
-from ai.files.knobs import is_number, knob
+from ai.files.knobs import knob
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import ModelFormatError
@@ -49,7 +49,7 @@ class Config(AgentConfig):
 
     def problems(self) -> list[str]:
         """Return what is wrong with the values, a sentence each."""
-        problems = super().problems() + _weight_problems(self.reward_weights)
+        problems = super().problems()
         if self.env == "":
             problems.append("env is the name of an environment, and was empty")
         return problems
@@ -97,14 +97,6 @@ def check_env(env: object, named: str | None) -> None:
             f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "
             "if you trust it, name it yourself with --env"
         )
-
-
-def _weight_problems(weights: Any) -> list[str]:
-    """Return what is wrong with the weights of the parts of the reward, a sentence each."""
-    if not isinstance(weights, RewardWeights):
-        return [f"reward_weights are finite numbers by name, not {shown(weights)}"]
-    wrong = {name: value for name, value in vars(weights).items() if not is_number(value)}
-    return [f"reward_weights.{name} is a finite number, not {shown(value)}" for name, value in wrong.items()]
 
 
 # What a network is taught with that lands anywhere, by `python main.py train --preset anywhere`; not among the presets

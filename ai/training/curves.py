@@ -11,7 +11,6 @@ import numpy as np
 from ai.agent.schedule import learning_rate
 from ai.environment import Doubles
 from ai.training.config import Config
-from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 
 ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
@@ -110,17 +109,14 @@ class RecentCurves:
         return []
 
     def since_change(self) -> float:
-        """Return how many flights have ended since a setting or the network was last changed; infinite if never."""
+        """Return how many flights have ended since a setting was last changed; infinite if never."""
         history, changes = self.history, self.history.setting_changes
         if not changes:
             return float("inf")
         return float(history["episodes"][-1] - history["episodes"][history.row_at(changes[-1].decisions)])
 
     def _in_force(self, change: SettingChange) -> bool:
-        """Whether a setting, or the network, is still as this change has made it."""
-        if change.name == EDITED:
-            edits = [each for each in self.history.setting_changes if each.name in (EDITED, REVERTED)]
-            return bool(change.after) and edits[-1] is change
+        """Whether a setting is still as this change has made it."""
         try:
             return bool(attrgetter(change.name)(self.config) == change.after)
         except AttributeError:  # a way back, or what a file says

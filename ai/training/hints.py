@@ -17,7 +17,6 @@ from ai.lander.environment import LIMITS
 from ai.lander.rewards import FEET_STEPS_PAID
 from ai.training.config import Config, idle
 from ai.training.curves import COLLAPSE, ENOUGH, RATES, RecentCurves, median, rate_too_high
-from ai.training.edits import EDITED
 from ai.training.history import History
 
 HOLD: Final = 2.0  # seconds of training for which a rule must hold before its hint appears
@@ -154,7 +153,7 @@ def _before_damage(run: RecentCurves) -> int | None:
 
 
 def _as_before(run: RecentCurves) -> Mapping[str, Any]:
-    return {each.name: each.before for each in run.blamed() if each.name != EDITED}
+    return {each.name: each.before for each in run.blamed()}
 
 
 def _before(name: str) -> Callable[[RecentCurves], int | None]:
@@ -204,7 +203,6 @@ RULES: Final = (
              _sane_rates, _before_damage, of_settings=True),
     HintRule("damaged", _damaged, _LEARNING, back_to=_before_damage),
     HintRule("changed", lambda run: bool(_as_before(run)), remedy=_as_before, back_to=_before("reward_weights.")),
-    HintRule("edited", lambda run: any(each.name == EDITED for each in run.blamed()), back_to=_before(EDITED)),
     HintRule("loss_explodes", _loss_explodes, ("loss",)),
     HintRule("q_runs_away", _q_runs_away, ("mean_return", "loss")),
     HintRule("dead_units", _dead_units, _LEARNING),

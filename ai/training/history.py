@@ -22,12 +22,10 @@ from ai.files import (
     Sized,
     Within,
     inside,
-    number_of,
     parse_json,
     problem_in,
     read_arrays,
     read_as,
-    read_json,
 )
 from ai.files import described as array_said
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
@@ -180,7 +178,7 @@ class _HistoryFile:
     checkpoints: Annotated[tuple[_CheckpointFile, ...], Sized(MOST_CHECKPOINTS)]
     alterations: tuple[SettingChange, ...]
     validations: tuple[Validation, ...]
-    reward_scale: Annotated[float, Above(0)] | None = None  # None in files from before it was kept here
+    reward_scale: Annotated[float, Above(0)]
 
 
 class History:
@@ -301,7 +299,7 @@ class History:
             arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
             described = read_as(_HistoryFile, parse_json(str(arrays["described"])))
             history._restore(described, arrays["points"], arrays["values"])
-            history.reward_scale = described.reward_scale or _scale_beside(folder)
+            history.reward_scale = described.reward_scale
         except FileNotFoundError:
             return cls(columns)
         except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as error:
@@ -310,16 +308,14 @@ class History:
 
     def _restore(self, described: _HistoryFile, points: Doubles, values: Floats) -> None:
         """Take over what was read; raises KeyError, TypeError or ValueError where it makes no sense."""
-        if points.ndim != 2 or points.shape[1] != len(described.columns) or len(points) > CAPACITY:
+        if described.columns != self.columns:
+            raise ValueError("its curves are of another kind of run, or of another version")
+        if points.ndim != 2 or points.shape[1] != len(self.columns) or len(points) > CAPACITY:
             raise ValueError(f"points of shape {points.shape}")
         self._length, self._stride, self._appended = len(points), described.stride, described.told
         if self._appended < self._length:
             raise ValueError(f"{self._length} points of {self._appended}, at a stride of {self._stride}")
-        # By name, so that a run from before a part was added can still be looked at.
-        self.points[...] = 0.0
-        for column, name in enumerate(described.columns):
-            if name in self.columns:
-                self[name][...] = points[:, column]
+        self.points[...] = points
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
         for saved, row in zip(described.checkpoints, values, strict=True):
@@ -341,12 +337,3 @@ def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     }
     if not fits.get(name):
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
-
-
-def _scale_beside(folder: str | Path) -> float:
-    """Return the reward scale of the network beside a history from before it had its own; 1 if there is none."""
-    try:
-        scale = number_of(read_json(inside(folder, "config.json"))["config"]["reward_scale"], 0)
-    except (OSError, ValueError, TypeError, KeyError):
-        return 1.0
-    return scale or 1.0

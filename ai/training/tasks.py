@@ -144,8 +144,8 @@ class Evaluation(Score):
 def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[Doubles]:
     """Fly all slots of `env`, which has just been reset, to the end; return the sums of the slots `measured`.
 
-    Those of two parts of all flights add up: how many ended in each outcome; returns; seconds, and seconds of main
-    engine, of the landings; engines that went on or off; seconds of all flights.
+    They are: how many ended in each outcome; returns; seconds, and seconds of main engine, of the landings; engines
+    that went on or off; seconds of all flights.
     """
     observation = env.observe()
     returns: Doubles = np.zeros(env.num_envs)

@@ -136,6 +136,8 @@ class App:
         except Exception:
             _log.exception("leaving the last scene")
         self.settings_writer.close(self.context.settings)
+        if self.context.pilot:
+            self.context.pilot.close()
         self.context.sound.close()
         self.window.close()
 

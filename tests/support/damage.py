@@ -5,8 +5,6 @@ from __future__ import annotations
 import io
 import json
 import os
-import warnings
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -95,41 +93,6 @@ def _mutate_archive(path: Path, rng: np.random.Generator) -> None:
     (np.savez_compressed if rng.random() < 0.5 else np.savez)(path, **kept)
 
 
-def repack(path: Path, rng: np.random.Generator) -> None:
-    """Pack an archive in a way that NumPy does not, or let it claim so."""
-    try:
-        with zipfile.ZipFile(path) as old:
-            members = {name: old.read(name) for name in old.namelist()}
-    except Exception:  # no archive, or one damaged before
-        _splice(path, rng)
-        return
-    made = io.BytesIO()
-    kind = int(rng.choice([zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA, zipfile.ZIP_DEFLATED]))
-    with warnings.catch_warnings(), zipfile.ZipFile(made, "w", kind) as new:
-        warnings.simplefilter("ignore")
-        for name, held in members.items():
-            for _ in range(int(rng.integers(1, 3))):
-                new.writestr(name, held)
-    written = bytearray(made.getvalue())
-    if rng.random() < 0.5:  # encrypted, or of a kind that nobody knows
-        place = written.rfind(b"PK\1\2")
-        written[place + 8], written[place + 10] = int(rng.integers(2)), int(rng.choice([8, 99]))
-    path.write_bytes(written)
-
-
-def _claim(path: Path, rng: np.random.Generator) -> None:
-    """Let an array be as large as a file full of holes."""
-    if path.suffix != ".npy":
-        _holes(path, rng)
-        return
-    header = io.BytesIO()
-    shape = [(HOLES // 4,), (10_000, 7_500), (2**40,), (0, 3), (-1, 3)][rng.integers(5)]
-    np.lib.format.write_array_header_1_0(header, {"descr": "<f4", "fortran_order": False, "shape": shape})
-    with path.open("wb") as file:
-        file.write(header.getvalue())
-        file.truncate(HOLES)
-
-
 def _holes(path: Path, _: np.random.Generator) -> None:
     with path.open("r+b") as file:
         file.truncate(HOLES)
@@ -166,6 +129,6 @@ def _empty(path: Path, _: np.random.Generator) -> None:
 
 
 DAMAGES: tuple[Callable[[Path, np.random.Generator], None], ...] = (
-    _cut, _flip, _flip, _splice, mutate, mutate, mutate, mutate, repack, _claim, _holes, _pipe, _folder, _link,
+    _cut, _flip, _flip, _splice, mutate, mutate, mutate, mutate, _holes, _pipe, _folder, _link,
     _deep, _remove, _empty,
 )  # fmt: skip

@@ -31,7 +31,7 @@ class Recorded:
 
 @cache
 def _file() -> tuple[list[str], dict[str, tuple[dict[str, Any], np.ndarray]]]:
-    """Names of the columns; every case with its table, by the name that it has today."""
+    """Names of the columns; every case with its table, by its name."""
     with np.load(FILE, allow_pickle=False) as arrays:
         described = json.loads(str(arrays["described"]))
         return described["columns"], {

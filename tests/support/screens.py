@@ -101,7 +101,7 @@ FLOWN: dict[str, Make] = {
     "friend": friend,
     "daily": daily,
     "Play": lambda context: PlayScene(context, 3),
-    "swarm": lambda context: WatchScene(context, 16, seed=2),
+    "swarm": lambda context: WatchScene(context, seed=2, many=True),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
     "tutorial": lambda context: PlayScene(context, 0, challenge=Tutorial()),
     "descent": lambda context: PlayScene(context, 3, challenge=Descent()),

@@ -137,7 +137,7 @@ class FlightsScene(_OverMoon):
         context, settings = self.context, self.context.settings
         records, days = Records(context.user_dir), Days(context.user_dir)
         entries = records.entries()
-        gold = {entry.course for entry in entries if entry.medal == 3 and not entry.outdated and entry.alone}
+        gold = {entry.course for entry in entries if entry.medal == 3 and entry.alone}
         attempt = days.attempts.get(self._today.isoformat())
         best = best_descent(entries)[0]
         self._figures = {

@@ -1,4 +1,4 @@
-"""Inside the network of a training run: the live network, what a player does to it, and what it is paid for."""
+"""Inside the network of a training run: the live network, and what it is paid for."""
 
 from __future__ import annotations
 
@@ -21,8 +21,6 @@ from game.explain.figures import points
 from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
 from game.explain.tables import Line, table
-from game.scenes.train.editing import NetworkEditing
-from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 
@@ -37,14 +35,12 @@ class Inside:
         view: shows `network`, None without a run; `shown` is the message that it came with.
         paid: points that each part of the reward has paid per flight, (len(PARTS),).
         health: diagnosis of the network's units and numbers.
-        editing: what a player does to the network by hand.
 
     """
 
-    def __init__(self, run: TrainingRun, rewind: Rewind, is_open: Callable[[], bool]) -> None:
+    def __init__(self, run: TrainingRun, is_open: Callable[[], bool]) -> None:
         self._run, self._is_open = run, is_open
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self.editing = NetworkEditing(self.view, run, rewind)
         self.clear()
 
     def clear(self) -> None:
@@ -54,7 +50,6 @@ class Inside:
         self._seen: NetworkState | None = None
         self.paid = np.zeros(len(PARTS))
         self.health = NetworkHealth()
-        self.editing.clear()
 
     @property
     def opened(self) -> bool:
@@ -95,8 +90,6 @@ class Inside:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self.view.hover(event.pos if self.opened else None)
-        if self.opened:
-            self.editing.follow(event)
 
     def update(self) -> None:
         """Advance by 1/60 s; the view follows while it is seen: to choose what it shows takes a millisecond."""
@@ -104,17 +97,14 @@ class Inside:
             self._seen = self.shown
             self.view.output_scale = self._run.config.reward_scale
             self.view.set(self.network, self.shown.observation)
-            self.editing.look(self.network)
-        self.editing.update()
         if self.opened:
             self.view.update()
 
     def describe(self, column: Column) -> None:
-        """Add what the lines show, and what can be done to the network."""
+        """Add what the lines show, and what a flight was paid for."""
         column.text(texts.NETWORK_VIEW_TITLE, size=TITLE)
         column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._choose, SMALL)
         column.aside(lambda: texts.NETWORK_VIEW_LINES[self.view.show])
-        self.editing.describe(column, opened=True)
         column.gap()
         column.caption(texts.REWARD_BAR_LABEL)
         if len(self._run.history):
@@ -130,9 +120,8 @@ class Inside:
         return [*lines, Line((texts.REWARD_SUM, points(float(self.paid.sum()), 1)), lit=True)]
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the network and the marks on it."""
+        """Draw the network."""
         self.view.draw(canvas)
-        self.editing.draw(canvas)
 
     def _choose(self, index: int) -> None:
         self.view.show = SHOWN[index]

@@ -220,7 +220,10 @@ class NetworksScene(PanelScene):
         """Ask whether the chosen run is to go for good."""
         run = self.chosen
         assert run is not None
-        answers = [(texts.RUN_KEEP, lambda: None), (texts.RUN_DELETE, partial(self._delete_now, run))]
+        answers: list[tuple[str, Callable[[], None]]] = [
+            (texts.RUN_KEEP, lambda: None),
+            (texts.RUN_DELETE, partial(self._delete_now, run)),
+        ]
         return Push(QuestionDialog(self, texts.RUN_DELETE_QUESTION.format(name=run.name), "", answers))
 
     def _delete_now(self, run: SavedRun) -> None:

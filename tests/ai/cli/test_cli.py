@@ -16,7 +16,8 @@ from ai.cli.command_line import configured, stoppable
 from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.messages import Saved
-from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
+from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask, evaluate
+from game.core.assets import MODELS_DIR
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -29,6 +30,17 @@ SMALL = [
 @pytest.fixture(autouse=True)
 def _measured_quickly(monkeypatch):
     monkeypatch.setattr(LanderTask, "test_episodes", 4)
+
+
+def test_evaluate_flies_as_the_network_was_trained_and_prints_an_interval_around_the_share(capsys):
+    model = MODELS_DIR / "lander" / "modern"
+    assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3", "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)
+    low, high = values.pop("success_interval")
+    assert low < values["success"] <= high
+    assert values == evaluate(DeepQAgent.load(model), 10, 3).to_json()
+    assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3"]) == 0
+    assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
 
 
 def test_train_evaluate_resume(tmp_path, capsys):
@@ -44,6 +56,18 @@ def test_train_evaluate_resume(tmp_path, capsys):
     assert json.loads((tmp_path / "run" / "training.json").read_text())["decisions"] == 800
     assert main(["evaluate", "--model", run, "--episodes", "2"]) == 0
     assert "success" in capsys.readouterr().out
+
+
+def test_a_run_is_paid_by_a_file_of_ones_own(tmp_path, capsys):
+    pay, run = tmp_path / "pay.py", tmp_path / "run"
+    pay.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
+    command = ["train", "--decisions", "400", "--validation", "4", *SMALL, "--pay", str(pay)]
+    assert main([*command, "--output", str(run)]) == 0
+    pay.write_text("def pay(before, action, after):\n    return 1 / 0")
+    assert main([*command, "--output", str(tmp_path / "another")]) == 1
+    assert "line 2: ZeroDivisionError" in capsys.readouterr().err
+    assert main([*command, "--output", str(tmp_path / "another"), "--env", "CartPole-v1"]) == 1
+    assert "--pay is for landers" in capsys.readouterr().err
 
 
 def test_what_cannot_be_done_is_said_in_a_line(capsys, tmp_path, monkeypatch):
@@ -216,7 +240,7 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
 
 def test_weights_of_the_reward_that_are_not_named_stay_the_presets():
     for preset in PRESETS.values():
-        changed = configured(preset, ['reward_weights={"time": -0.3}', 'weights={"feet": 2.0}'])
+        changed = configured(preset, ['reward_weights={"time": -0.3}', 'reward_weights={"feet": 2.0}'])
         assert changed.reward_weights == replace(preset.reward_weights, time=-0.3, feet=2.0)
 
 

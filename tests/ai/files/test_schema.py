@@ -79,12 +79,8 @@ def test_one_message_names_everything_that_is_wrong_and_is_short_all_the_same():
     assert len(caught.value.problems) < 30  # of 500
 
 
-def test_fields_that_are_unknown_are_passed_over_or_refused():
+def test_fields_that_are_unknown_are_passed_over():
     assert read_as(Cart, WHOLE | {"bell": 1}) == read_as(Cart, WHOLE)
-    with pytest.raises(SchemaError, match="bell is unknown"):
-        read_as(Cart, WHOLE | {"bell": 1}, strict=True)
-    with pytest.raises(SchemaError, match=r"wheels\[0\].bell is unknown"):
-        read_as(Cart, WHOLE | {"wheels": [{"radius": 1, "bell": 1}]}, strict=True)
     with pytest.raises(ValueError, match="no table"):
         read_as(Cart, [])
 
@@ -99,11 +95,11 @@ def test_a_file_says_its_format_and_a_version_that_can_be_read():
     for values, said in (
         ([], "does not say that this is a 'cart'"),
         ({"format": "car", "version": 1}, "'cart'"),
-        ({"format": "cart"}, "format version null; this program reads version 1 and 2"),
+        ({"format": "cart"}, "format version null; this program reads version 2"),
         ({"format": "cart", "version": True}, "version true"),
         ({"format": "cart", "version": "x" * 1000}, "version 'xxx"),
     ):
         with pytest.raises(ValueError, match=said) as caught:
-            check_header(values, "cart", (1, 2))
+            check_header(values, "cart", 2)
         assert len(str(caught.value)) < 100
-    assert check_header({"format": "cart", "version": 2}, "cart", (1, 2))["version"] == 2
+    assert check_header({"format": "cart", "version": 2}, "cart", 2)["version"] == 2

@@ -155,23 +155,16 @@ def test_nonsense_is_named(tmp_path, subtests):
                 History.read(tmp_path)
 
 
-def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
-    history = full_history()
-    history.write(tmp_path)
-    rewritten(tmp_path, columns=[*COLUMNS[:-1], "gone"])
-    again = History.read(tmp_path)
-    assert np.array_equal(again["success"], history["success"])
-    assert not again[PARTS[-1]].any()
+def test_curves_of_other_columns_are_refused(tmp_path):
+    for columns in ([*COLUMNS[:-1], "gone"], [*COLUMNS, "more"], COLUMNS[::-1]):
+        full_history().write(tmp_path)
+        rewritten(tmp_path, columns=columns)
+        with pytest.raises(ModelFormatError, match="of another version"):
+            History.read(tmp_path)
 
 
-def test_a_history_knows_in_which_unit_its_values_are_and_an_older_one_takes_it_from_its_network(tmp_path):
+def test_a_history_knows_in_which_unit_its_values_are(tmp_path):
     history = full_history()
     history.reward_scale = 0.1
     history.write(tmp_path)
     assert History.read(tmp_path).reward_scale == 0.1
-    rewritten(tmp_path, reward_scale=None)
-    assert History.read(tmp_path).reward_scale == 1.0
-    (tmp_path / "config.json").write_text(json.dumps({"config": {"reward_scale": 0.01}}))
-    read = History.read(tmp_path)
-    assert read.reward_scale == 0.01
-    assert read["mean_q"].tolist() == history["mean_q"].tolist()

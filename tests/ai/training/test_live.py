@@ -120,10 +120,10 @@ def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
 REFUSED = [
     ("no_such_knob", 1, "no setting"), ("", 1, "no setting"), ("reward_weights.charm", 1.0, "no setting"),
     ("discount.time", 1.0, "no setting"), ("hidden", (4,), "cannot change"), ("num_envs", 4, "cannot change"),
-    ("learning_rate", 1e9, "between"), ("learning_rate", float("nan"), "between"),
-    ("learning_rate", "fast", "between"), ("batch_size", 2.5, "whole"), ("double", 1, "yes or no"),
+    ("learning_rate", 1e9, "between"), ("learning_rate", float("nan"), "finite"),
+    ("learning_rate", "fast", "finite"), ("batch_size", 2.5, "whole"), ("double", 1, "true nor false"),
     ("reward_weights.time", float("inf"), "finite"), ("reward_weights.time", None, "finite"),
-    ("reward_weights", 3, "finite"),
+    ("reward_weights", 3, "no table"),
 ]  # fmt: skip
 
 

@@ -87,7 +87,7 @@ def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
     assert "to_human" in sound.heard()
 
 
-@pytest.mark.parametrize("make", [partial(PlayScene, seed=4), partial(WatchScene, count=16, seed=4)])
+@pytest.mark.parametrize("make", [partial(PlayScene, seed=4), partial(WatchScene, seed=4, many=True)])
 def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, open_game, make, monkeypatch):
     asked: list[dict[str, float]] = []
     monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))

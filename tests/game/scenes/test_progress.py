@@ -50,7 +50,7 @@ def test_progress_is_put_away_after_a_question_and_it_is_said_where(open_game: O
     assert files(context.user_dir) == before
     player.choose(texts.PROGRESS_RESET)
     player.choose(texts.PROGRESS_YES)
-    (box,) = context.user_dir.glob("progress *")
+    [box] = context.user_dir.glob("progress *")
     assert str(box) in player.said
     player.frames(3)
     assert (files(context.user_dir), files(box)) == ({}, before)

@@ -171,12 +171,6 @@ def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(tra
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(3)
     assert run.twin.state is run.state is WorkerState.PAUSED
-    before = run.turns, run.twin.turns
-    train.press_on(texts.LAB_KNOBS)
-    train.frames(1)
-    train.press_on(texts.TRAIN_STEP)
-    train.frames(3)
-    assert (run.turns, run.twin.turns) == (before[0] + 1, before[1] + 1)
 
 
 # The guess
@@ -296,7 +290,7 @@ def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     assert texts.LAB_AS_GUESSED in came_words("never", "never")
 
 
-def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_painted_chart(
+def test_two_lines_in_every_chart_and_both_shares_are_those_of_the_painted_chart(
     train: Driver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     split(train)
@@ -308,9 +302,6 @@ def test_two_lines_in_every_chart_by_decisions_and_both_shares_are_those_of_the_
         shares = [each for each in written if each.endswith(texts.SPLIT_LANDED.format(percent=""))]
         assert shares == [texts.SPLIT_LANDED.format(percent=share) for share in train.top.charts.landed]
     assert {len(chart.runs) for chart in train.top.charts.charts} == {2}
-    train.press_on(texts.LAB_KNOBS)
-    train.frames(1)
-    assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
