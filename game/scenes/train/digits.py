@@ -163,8 +163,8 @@ class DigitTrainingScene(TrainingScene):
             self.matrix.set(run.confusion)
         if run.alive and len(history):
             rate, before = float(history["learning_rate"][-1]), self.knobs.settings.in_force
-            if before is None or before.values["learning_rate"] != rate or before.idle != run.config.unused():
-                self.knobs.show_in_force(InForce({"learning_rate": rate}, run.config.unused()))
+            if before is None or before.values["learning_rate"] != rate:
+                self.knobs.show_in_force(InForce({"learning_rate": rate}))
         looked = self.charts.look(history, Beside(run.earlier))
         self.charts.update(at_once=self._settings.reduced_motion, turn=not looked)
         return self._finish_update()
