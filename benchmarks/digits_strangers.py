@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.preprocessing import preprocess_strokes, stages
+from ai.digits.preprocessing import preprocess_strokes, redrawn, stages, stroke_stages
 from benchmarks.hand_styles import HANDS, UNSEEN
+from game.scenes.digits.reader import Reading, Verdict
 from tests.support.digit_styles import template_strokes
 from tests.support.stranger_digits import ENDS, TURNS, narrow, scan, slashed_zero
 
 MODELS = Path(__file__).parents[1] / "models" / "digits"
-SURE = 0.9
 
 
 def curved(strokes):
@@ -54,11 +54,14 @@ def read_zeros(networks, each, rng):
             *(f"{name} {np.mean(each == 0):.1%}" for name, each in zip(networks, read, strict=True)),
         )
     for digit in (0, 8):
-        drawn = np.stack([preprocess_strokes(narrow(digit, rng)) for _ in range(5 * each)])
-        found = {name: network.predict(drawn) for name, network in networks.items()}
-        answers = np.stack([values.argmax(axis=1) for values in found.values()])
-        sure = (found["modern"].max(axis=1) >= SURE) & (answers == answers[0]).all(axis=0) & (answers[0] != digit)
-        shares = [f"{name} {np.mean(each == digit):.1%}" for name, each in zip(found, answers, strict=True)]
+        drawn = [stroke_stages(redrawn(narrow(digit, rng)), np.zeros((1, 1))) for _ in range(5 * each)]
+        readings = [
+            Reading(seen, {name: network.predict(seen.centred)[0] for name, network in networks.items()})
+            for seen in drawn
+        ]
+        answers = {name: np.array([read.probabilities[name].argmax() for read in readings]) for name in networks}
+        sure = np.array([read.verdict("modern") is Verdict.SURE for read in readings]) & (answers["modern"] != digit)
+        shares = [f"{name} {np.mean(read == digit):.1%}" for name, read in answers.items()]
         print(f"{digit} narrow", *shares, f"sure of another digit: {sure.sum()} of {len(drawn)}")
 
 

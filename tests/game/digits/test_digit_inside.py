@@ -151,6 +151,7 @@ def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver):
     digit = maps(inside)[0]
     player.press("down", "up")  # from now on there is no mouse in use
     inside.form.focus(digit)
+    scene(inside)._look_at((10, 10, walk.place[2]))
     row, column, channel = walk.place
     player.press("confirm", "down", "down", "left")
     assert digit.typing
