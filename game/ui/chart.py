@@ -75,7 +75,7 @@ class Chart:
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
         self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
-        self.painted_latest: tuple[str, ...] = ()  # of each run, as the sheet was painted
+        self.painted_latest: tuple[float | None, ...] = ()  # number of each run, as the sheet was painted
         self._painted: Painted | None = None  # until the numbers or the window change
         self._others: tuple[object, Canvas] | None = None  # the runs behind the current one, and what they look like
         self._stale = True
@@ -101,10 +101,6 @@ class Chart:
         """Box of the numbers of the scale, in points."""
         plot = self.plot
         return pygame.FRect(plot.right + _MARGIN, plot.top - 8, _GUTTER - _MARGIN, plot.height + 8 + _FOOT)
-
-    def _latest(self, run: Series) -> str:
-        value = run.last()
-        return "–" if value is None else self.read(value)
 
     @property
     def limits(self) -> Limits:
@@ -206,7 +202,7 @@ class Chart:
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
-        self.painted_caption, self.painted_latest = self.caption, tuple(map(self._latest, self.runs))
+        self.painted_caption, self.painted_latest = self.caption, tuple(run.last() for run in self.runs)
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)
