@@ -165,8 +165,6 @@ def rows() -> dict[str, Row]:
             for key in PATH
         },
         "physics, contacts": Row(heap, (pygame.K_c,)),
-        **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
-        "physics, measuring": Row(lambda context: plotted(context, "heap", measuring=True)),
         "physics, one step": Row(
             lambda below: PhysicsStepScene(below.context, below.exhibit),
             (pygame.K_PERIOD,),
@@ -194,15 +192,6 @@ def rows() -> dict[str, Row]:
         "train, split": Row(_split),
         "digittraining": of_tour("DigitTrainingScene", (pygame.K_RETURN,)),
     }
-
-
-def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> PhysicsScene:
-    """Open the gallery with the plot of law and measurement; `measuring` its whole range at once."""
-    scene = PhysicsScene(context, exhibit)
-    scene.toggle_plot()
-    if measuring:
-        scene.measure()
-    return scene
 
 
 def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassifier]:

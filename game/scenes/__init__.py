@@ -13,7 +13,7 @@ from game.ui.context import Context
 ROUTES: Final = {
     "menu": "menus.menu.MenuScene", "flights": "menus.menu.FlightsScene", "play": "play.scene.PlayScene",
     "tutorial": "play.starts.tutorial", "descent": "play.starts.descent", "race": "play.starts.race",
-    "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "days": "play.daily.DaysScene",
+    "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "day": "play.starts.day",
     "watch": "watch.scene.WatchScene", "pilots": "watch.pilots.PilotsScene",
     "train": "train.scene.TrainScene", "runs": "train.networks.NetworksScene",
     "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",

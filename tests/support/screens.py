@@ -36,7 +36,7 @@ from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.choices import ChoicesScene
-from game.scenes.play.daily import DailyStart, DaysScene
+from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
@@ -78,7 +78,6 @@ SCREENS: dict[str, Make] = {
     "ChapterScene": ChapterScene,
     "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
-    "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
     "NetworksScene": NetworksScene,

@@ -118,7 +118,6 @@ class Knob(RowWidget):
             colour = mix(_DIM if self.idle else mix(MUTE, INK, 0.7), INK, self.warmth)
             room = self.track[0] - cursor.left - 10
             canvas.text(self.label, (cursor.left, top + _HEIGHT / 2 + 4.5), size=SMALL, colour=colour, room=room)
-            canvas.cover(canvas.rect(*self.box))
         self.put(cursor, top + _HEIGHT / 2)
 
     def put(self, cursor: Cursor, middle: float) -> None:
