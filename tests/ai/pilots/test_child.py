@@ -39,7 +39,7 @@ WRONG = {
     "def act(o): return [1, [2]]": "0 act must return a whole number from 0 to 5, and returned [1, [2]]",
     "async def act(o): return 0": "0 act is async: it must be a plain function, def act",
     "async def act_many(o): yield 0": "0 act_many is async: it must be a plain function, def act_many",
-    "class Pilot:\n    async def __call__(self, o): return 0\nact = Pilot()": "0 act is async: it must be a plain function",
+    "class P:\n    async def __call__(self, o): return 0\nact = P()": "0 act is async: it must be a plain function",
     "def act(o): yield 0": "0 act must return a whole number from 0 to 5, and returned <generator",
     "import numpy as np\ndef act(o): return np.ma.masked": "0 act must return a whole number from 0 to 5, and returned",
     MASKED: "0 act_many must return 3 whole numbers from 0 to 5, and returned masked_array(",
