@@ -24,7 +24,8 @@ ROUTES: Final = {
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
     "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
     "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.list.LearnScene",
-    "chapter": "learn.scene.ChapterScene", "lesson": "lesson.scene.LessonScene",
+    "one_file": "learn.one_file.OneFileScene", "chapter": "learn.scene.ChapterScene",
+    "lesson": "lesson.scene.LessonScene",
     "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip
 

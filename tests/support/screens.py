@@ -21,6 +21,7 @@ from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.scene import DigitsScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.learn.list import LearnScene
+from game.scenes.learn.one_file import OneFileScene
 from game.scenes.learn.path import FIRST, PATH
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
@@ -76,6 +77,7 @@ SCREENS: dict[str, Make] = {
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
     "LearnScene": LearnScene,
     "ChapterScene": ChapterScene,
+    "OneFileScene": OneFileScene,
     "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
