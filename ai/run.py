@@ -29,6 +29,7 @@ class Run(ABC):
         diverged: whether what it remembers may be broken: then there is no state to go on from.
         around: what whoever led it has kept in the state that it goes on from; JSON can hold it.
         needs_state: whether no such run goes on without its state.
+        stopping: is asked again and again while a network is measured; where it says so, that ends without a score.
 
     """
 
@@ -43,6 +44,7 @@ class Run(ABC):
         self.best: Any = None
         self.lost, self.diverged = "", False
         self.around: dict[str, Any] = {}
+        self.stopping: Callable[[], bool] = lambda: False
 
     @property
     @abstractmethod
@@ -70,6 +72,9 @@ class Run(ABC):
     @abstractmethod
     def restore_best(self) -> None:
         """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
+
+    def close(self) -> None:  # noqa: B027 - most hold nothing
+        """Let go of what it holds, such as other programs; it does not go on."""
 
     # On disk
 

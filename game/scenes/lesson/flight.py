@@ -75,7 +75,7 @@ def moment_frame(lesson: Lesson) -> Frame:
         left.picture(lambda width: width * VIEW_SIZE[1] / VIEW_SIZE[0], draw)
         right.add(table((texts.LESSON_INPUTS, texts.LESSON_IN_UNITS, texts.LESSON_GIVEN), lambda: lines))
 
-    functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)
+    functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.scaled)
     return Frame(texts.LESSON_FRAMES["moment"], sensed(units[1], 1), functions, "rows", describe)
 
 
