@@ -27,7 +27,6 @@ class Run(ABC):
         best: score of the best network so far; None if none has been measured.
         lost: what could not be restored of a run that goes on, in words.
         diverged: whether what it remembers may be broken: then there is no state to go on from.
-        around: what whoever led it has kept in the state that it goes on from; JSON can hold it.
         needs_state: whether no such run goes on without its state.
         stopping: is asked again and again while a network is measured; where it says so, that ends without a score.
 
@@ -43,7 +42,6 @@ class Run(ABC):
         self.seconds = 0.0
         self.best: Any = None
         self.lost, self.diverged = "", False
-        self.around: dict[str, Any] = {}
         self.stopping: Callable[[], bool] = lambda: False
 
     @property

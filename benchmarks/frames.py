@@ -45,7 +45,6 @@ import pygame
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
 from ai.lander.missions import MISSIONS
-from ai.training.experiments import experiments
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.digits.kept import classifier_in
@@ -72,7 +71,7 @@ from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
 from game.scenes.train.scene import TrainScene
-from game.scenes.watch.scene import COUNTS, WatchScene
+from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import landscape
@@ -155,20 +154,16 @@ def rows() -> dict[str, Row]:
             lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
-        **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
-        "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
-        "watch, map of scores": Row(
-            lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
-        ),
-        "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch": Row(lambda context: WatchScene(context, seed=4)),
+        "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
+        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
+        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
             for key in PATH
         },
         "physics, contacts": Row(heap, (pygame.K_c,)),
-        **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
-        "physics, measuring": Row(lambda context: plotted(context, "heap", measuring=True)),
         "physics, one step": Row(
             lambda below: PhysicsStepScene(below.context, below.exhibit),
             (pygame.K_PERIOD,),
@@ -198,15 +193,6 @@ def rows() -> dict[str, Row]:
     }
 
 
-def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> PhysicsScene:
-    """Open the gallery with the plot of law and measurement; `measuring` its whole range at once."""
-    scene = PhysicsScene(context, exhibit)
-    scene.toggle_plot()
-    if measuring:
-        scene.measure()
-    return scene
-
-
 def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassifier]:
     """Return the context and a shipped network, which the scene below has read."""
     return context, classifier_in(context.models_dir / "digits" / name)
@@ -215,9 +201,8 @@ def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassif
 def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
-    experiment = experiments(scene.knobs.config, "learning_rate")[-1]
-    scene.laboratory.chosen = Chosen(experiment, "")
-    scene._split(experiment)
+    scene.laboratory.chosen = Chosen("rate_times_100")
+    scene._split("rate_times_100")
     return scene
 
 

@@ -26,12 +26,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.network import build_network
-from ai.explain.inspection import NetworkHealth
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.curves import RecentCurves
-from ai.training.edits import Edit
 from ai.training.hints import Adviser, Hint
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import LanderSession
@@ -53,7 +49,6 @@ TURNS: Final[dict[str, dict[str, Any]]] = {
     "steadiness 1": {"steadiness": 1.0},
     "rates 1 and back": {"learning_rate": 1.0, "final_learning_rate": 1.0},
     "paid for staying away": {"reward_weights.distance": -5.0, "reward_weights.time": 5.0},
-    "edited": {},
 }
 FROM_THE_START: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
     **{name: WEAKENED[name] for name in ("plain_steps", "no_replay", "one_lander")},
@@ -70,7 +65,6 @@ class Watched:
     resume: Path | None = None
     keep: Path | None = None
     history: History = field(default_factory=History)
-    health: NetworkHealth = field(default_factory=NetworkHealth)
 
     def __post_init__(self) -> None:
         pace = ALONE if self.config.num_envs == 1 else PACE
@@ -80,7 +74,6 @@ class Watched:
         self.history.reward_scale = self.config.reward_scale
         if self.resume:
             self.history = History.read(self.resume)
-        self._network = build_network(NUM_FEATURES, NUM_ACTIONS, self.config, np.random.default_rng(0))
         self.problem = ""
         self.take(next(self._run))
 
@@ -112,9 +105,7 @@ class Watched:
             elif isinstance(message, Point | SettingChange | Checkpoint):
                 self.history.append(message)
             elif isinstance(message, NetworkState):
-                self._network.values, self._network.gradients[:] = message.values, message.gradients
-                self.health.look(self._network, message.observation, self.config.gradient_clip)
-                return self.adviser.advise(self.history, self.config, self.health.dead_share, self.health.clipped_share)
+                return self.adviser.advise(self.history, self.config)
         return self.adviser.shown
 
     def close(self) -> None:
@@ -164,9 +155,6 @@ def broken(name: str, base: Path) -> tuple[float, Watched]:
             run.go_on()
         for knob in TURNS[name]:
             run.send("change", knob, getattr(NEAR, knob))
-    if name == "edited":
-        for unit in range(NEAR.hidden[-1]):
-            run.send("edit", Edit(1, unit))
     return before, run
 
 

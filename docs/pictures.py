@@ -63,14 +63,14 @@ def lesson(context: Context) -> LessonScene:
 PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...] = (
     ("menu", MenuScene, {}, 200),
     ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
-    ("watch", partial(WatchScene, count=64, seed=3), {}, 260),
+    ("watch", partial(WatchScene, seed=3, many=True), {}, 260),
     ("map", partial(WatchScene, seed=4), {30: pygame.K_m}, 110),
     ("descent", partial(PlayScene, seed=4, challenge=Descent()), dict.fromkeys(range(5, 160, HELD), pygame.K_UP), 100),
     ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
     ("lesson", lesson, {5: pygame.K_RIGHT}, 60),
     ("digits", DigitsScene, {}, 150),
-    ("physics", partial(PhysicsScene, exhibit="heap", now=time.process_time), {60: pygame.K_c}, 400),
+    ("physics", partial(PhysicsScene, exhibit="heap"), {60: pygame.K_c}, 400),
     (
         "mars",
         partial(PlayScene, seed=0, challenge=FlownMission(MISSIONS["mars"])),

@@ -1,4 +1,4 @@
-"""A pay that goes wrong: it pays for staying up, so that is what is learnt. Choose it in Train, and watch."""
+"""A pay that goes wrong: it pays for staying up, so that is what is learnt: train --pay FILE."""
 
 from ai.pilots import CRASHED, OUT
 

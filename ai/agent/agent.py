@@ -64,7 +64,6 @@ class DeepQAgent:
         gradient_steps: gradient steps taken so far.
         loss: mean absolute temporal-difference error of the last `learn`, in scaled reward.
         mean_q: mean value of the next states it learned from, in the same unit.
-        paused: whether `learn` does nothing, while its network is edited by hand.
         folder: where it was read from; None for an agent that was not.
         run_settings: what its file says of the run it is from, and `config` does not; saved with it again.
 
@@ -94,7 +93,6 @@ class DeepQAgent:
             self.replay = replay
         self.decisions = self.gradient_steps = 0
         self.loss = self.mean_q = 0.0
-        self.paused = False
         self.folder: Path | None = None
         self.run_settings: dict[str, Any] = {}
         self.n_step = NStep(self.config.n_step, self.config.discount)
@@ -149,10 +147,10 @@ class DeepQAgent:
     def learn(self) -> float | None:
         """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return `loss`.
 
-        None until it is `ready`, and while it is `paused`. Raises DivergenceError when a number is no longer finite.
+        None until it is `ready`. Raises DivergenceError when a number is no longer finite.
         """
         config = self.config
-        if self.paused or not self.ready:
+        if not self.ready:
             return None
         self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip

@@ -45,6 +45,7 @@ def add_commands(commands: Any) -> None:
     add("--preset", help="modern, classic or anywhere, which lands on any world (default: modern, or as --env needs)")
     add("--decisions", type=int, help="stop when the whole run, resumed or not, has taken so many decisions")
     add("--validation", type=int, metavar="N", help="episodes that choose the best network")
+    add("--pay", type=Path, metavar="FILE", help="pay by the function pay(before, action, after) of a Python file")
     add = read.add_argument
     add("--preset", help="modern, classic, as-described, or thorough, as the shipped modern one (default: modern)")
     add("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
@@ -121,6 +122,8 @@ def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., A
             else:
                 training = resume(kind, arguments.resume, env=getattr(arguments, "env", None))
                 _go_on(training, config(arguments, training.config), arguments)
+            if getattr(arguments, "pay", None):
+                claims.callback(_paid_by(training, arguments.pay))
             if getattr(arguments, "validation", None):
                 training.validation_episodes = arguments.validation
             if limit.share(training) >= 1.0:
@@ -133,6 +136,16 @@ def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., A
         except cli.REFUSED as error:
             return cli.fail(cli.reason(error))
         return _train_and_keep(training, output, limit)
+
+
+def _paid_by(training: Any, path: Path) -> Callable[[], None]:
+    """Let a file of the user's own pay a run; return what ends its process. Raises ValueError."""
+    from ai.lander.environment import LanderEnv
+    from ai.pilots.own import pay_by
+
+    if not isinstance(training.env, LanderEnv):
+        raise ValueError("--pay is for landers")
+    return pay_by(training.env, path)
 
 
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:

@@ -101,6 +101,6 @@ def read_description(folder: str | Path) -> dict[str, Any]:
     folder = Path(folder)
     recover_folder(folder)
     try:
-        return check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, (VERSION,))
+        return check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, VERSION)
     except (OSError, ValueError) as error:
         raise ModelFormatError(folder, [f"{DIGITS_FILE}: {problem_in(error)}"]) from error

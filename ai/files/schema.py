@@ -8,7 +8,7 @@ The reasons for this module in place of a library are in docs/adr/0013-one-reade
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, fields
 from functools import cache, partial
@@ -110,14 +110,13 @@ def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any],
     return right, problems + wrong
 
 
-def check_header(values: Any, form: str, versions: Collection[int]) -> dict[str, Any]:
-    """Return the values of a file that says it is of this format, in a version that can be read; raises ValueError."""
+def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
+    """Return the values of a file that says it is of this format and version; raises ValueError."""
     if not isinstance(values, dict) or values.get("format") != form:
         raise ValueError(f"does not say that this is a {form!r}")
-    version = values.get("version")
-    if type(version) is not int or version not in versions:
-        known = " and ".join(map(str, versions))
-        raise ValueError(f"format version {shown(version)}; this program reads version {known}")
+    held = values.get("version")
+    if type(held) is not int or held != version:
+        raise ValueError(f"format version {shown(held)}; this program reads version {version}")
     return values
 
 

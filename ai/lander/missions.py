@@ -28,7 +28,6 @@ class Mission:
         night: whether only lights are seen.
         landed: how many of 20 starts near this one the network that flies here lands, as `benchmarks.missions`
             measures it.
-        rules: version of the mission, raised whenever it changes: flights under another version no longer count.
 
     """
 
@@ -43,7 +42,6 @@ class Mission:
     world: str = "moon"
     night: bool = False
     landed: int = 20
-    rules: int = 0
 
     @property
     def elsewhere(self) -> bool:
@@ -94,12 +92,12 @@ _ROWS: Final = (
     Mission("brake", (0.0, 19.0, 0.0, -2.5, 0.0, 0.0), (3.1, 8.0), (4.2, 12.0)),
     Mission("aside", (-12.0, 12.0, 0.0, 0.0, 0.0, 0.0), (3.5, 10.0), (4.7, 14.0)),
     Mission("wind", (8.0, 14.0, 0.0, -0.5, 0.0, 0.0), (3.2, 9.5), (4.3, 13.0), Conditions(wind=0.25, gust=0.3),
-            params=replace(_on(1.35, 3.6), quadratic_drag=_THICK_AIR), world="titan", rules=1),
+            params=replace(_on(1.35, 3.6), quadratic_drag=_THICK_AIR), world="titan"),
     Mission("tank", (6.0, 15.0, -0.5, -1.0, 0.0, 0.0), (2.6, 9.0), (2.8, 12.0), Conditions(tank=3.0)),
     Mission("narrow", (-9.0, 13.0, 1.0, -0.5, 0.1, 0.0), (3.3, 9.5), (4.4, 13.0), pad=Pad(3.0, 2.2, 3.2)),
     Mission("mars", (7.0, 15.0, -1.0, -1.0, 0.0, 0.0), (3.3, 8.5), (4.4, 12.0), Conditions(wind=-0.1, gust=0.2),
             params=_on(3.71, 8.0), world="mars"),
-    Mission("earth", (-5.0, 14.0, 0.5, 0.0, 0.0, 0.0), (3.6, 7.0), (5.0, 10.0), world="earth", rules=1,
+    Mission("earth", (-5.0, 14.0, 0.5, 0.0, 0.0, 0.0), (3.6, 7.0), (5.0, 10.0), world="earth",
             params=replace(_on(9.81, 16.0), quadratic_drag=_AIR), limits=_STRONG_LEGS),
     Mission("night", (11.0, 14.0, -1.0, -0.5, -0.2, 0.0), (3.5, 10.5), (4.7, 15.0), night=True),
     Mission("ferry", (-8.0, 14.0, 0.0, -0.5, 0.0, 0.0), (4.2, 11.0), (5.6, 16.0),

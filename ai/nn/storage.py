@@ -166,7 +166,7 @@ def noted(problems: list[str], place: str) -> Iterator[None]:
 def _read_config(folder: Path) -> dict[str, Any]:
     if not folder.is_dir():
         raise ValueError("this is a file, not a folder" if folder.exists() else "there is no such folder")
-    return check_header(read_json(inside(folder, CONFIG)), FORMAT, (VERSION,))
+    return check_header(read_json(inside(folder, CONFIG)), FORMAT, VERSION)
 
 
 def _make_layer(description: Any) -> Layer:

@@ -1,4 +1,4 @@
-"""The files of a player: pilots and pays, each kind in a folder of its own, and how pilots were measured over time."""
+"""The pilots of a player: files in a folder, and how they were measured."""
 
 from __future__ import annotations
 
@@ -10,12 +10,9 @@ from pathlib import Path
 from threading import Thread
 from typing import Annotated, Final
 
-from ai.files import Count, Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
-from ai.pilots.child import ACT, PAY
+from ai.files import Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
 
-TEMPLATES: Final = Path(__file__).parents[2] / "assets" / "pilots"
-_FOLDERS: Final = {ACT: "pilots", PAY: "pays"}
-_NAMES: Final = {ACT: "pilot", PAY: "pay"}
+TEMPLATE: Final = Path(__file__).parents[2] / "assets" / "pilots" / "pilot.py"
 _SUFFIX: Final = ".py"
 _LARGEST: Final = 1_000_000  # last bytes of the measurements that are read
 _LONGEST: Final = 255
@@ -30,7 +27,6 @@ class Measured:
     Attributes:
         seconds, fuel: those of the landings.
         when: when it began, in seconds since 1970.
-        lost: how many flights were lost by each `Cause` of a crash from the first on, then outside, then to time.
 
     """
 
@@ -39,7 +35,6 @@ class Measured:
     seconds: _Figure = 0.0
     fuel: _Figure = 0.0
     when: Annotated[float, Within(0, 32_503_680_000 - 1)] = 0.0
-    lost: Annotated[tuple[Count, ...], Sized(7)] = ()
 
     def stale(self, path: Path) -> bool:
         """Whether the file was saved again since."""
@@ -50,10 +45,10 @@ class Measured:
 
 
 class Shelf:
-    """The player's files of one kind, `ACT` or `PAY`. Nothing in them runs before it is asked for by name."""
+    """The player's pilots. Nothing in them runs before it is asked for by name."""
 
-    def __init__(self, user_dir: Path, kind: str = ACT) -> None:
-        self.kind, self.folder = kind, user_dir / _FOLDERS[kind]
+    def __init__(self, user_dir: Path) -> None:
+        self.folder = user_dir / "pilots"
         self.results = self.folder / "measured.jsonl"
 
     def files(self) -> dict[str, Path]:
@@ -66,9 +61,8 @@ class Shelf:
 
     def new(self) -> Path:
         """Write the template under a name that is free; return its path. Raises OSError."""
-        name = _NAMES[self.kind]
-        path = free_path(self.folder, name, _SUFFIX)
-        write_text(path, read_text(TEMPLATES / f"{name}{_SUFFIX}"))
+        path = free_path(self.folder, TEMPLATE.stem, _SUFFIX)
+        write_text(path, read_text(TEMPLATE))
         return path
 
     def keep(self, measured: Measured) -> None:

@@ -106,7 +106,7 @@ class Study:
     def load(cls, folder: Path) -> Self:
         """Read a study; raises StudyError for a folder that is none."""
         try:
-            plan = read_as(Plan, check_header(read_json(folder / STUDY_FILE), FORMAT, (VERSION,)).get("plan"))
+            plan = read_as(Plan, check_header(read_json(folder / STUDY_FILE), FORMAT, VERSION).get("plan"))
             plan.check()
         except OSError as error:
             raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error

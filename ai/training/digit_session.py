@@ -1,4 +1,4 @@
-"""Session of digits: batches, the images held out as they are read, and the filters as they form."""
+"""Session of digits: batches, and the images held out as they are read."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.training import DigitProgress, DigitTraining
 from ai.digits.validation import ValidationReading
 from ai.explain.digit_lesson import explain_digit
@@ -17,7 +16,6 @@ from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
 from ai.training.session import Session
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
-_LARGEST: Final = float(np.finfo(np.float16).max)
 _SHARE: Final = 0.25  # of the time that goes into reading the images held out
 
 
@@ -29,7 +27,7 @@ class DigitSession(Session[DigitTraining]):
     def __init__(self, training: DigitTraining, keep: Path | None, source: Path | None) -> None:
         super().__init__(training, keep, source)
         self._batches: list[tuple[float, float]] = []  # loss and accuracy
-        self._began = self._point_at = self._filters_at = training.seconds
+        self._began = self._point_at = training.seconds
         self._reading: ValidationReading | None = None
         self._best: tuple[float, Array] | None = None  # of all that was read, the accuracy and the values
         if training.best is not None and training.best_values is not None:
@@ -37,13 +35,7 @@ class DigitSession(Session[DigitTraining]):
         self._looking = 0.0  # seconds
 
     def show(self) -> None:
-        """Tell the filters of the first layer as they are now, of the weights that learn, if that is due."""
-        training = self.training
-        if training.seconds < self._filters_at:
-            return
-        self._filters_at = next_moment(training.seconds)
-        images = np.clip(first_filters(training.classifier.network), -_LARGEST, _LARGEST).astype(np.float16)
-        self.messages.append(FilterMoment(training.seconds, training.step, images))
+        """Show nothing: its history says it all."""
 
     def tell(self, progress: DigitProgress) -> None:
         training = self.training
@@ -54,7 +46,6 @@ class DigitSession(Session[DigitTraining]):
             self._batches.clear()
             step, epoch, rate, pace = progress.step, progress.epoch, progress.learning_rate, progress.images_per_second
             self.record(DigitPoint(training.seconds, step, epoch, loss, accuracy, rate, pace))
-        self.show()
         if self._looking <= _SHARE * (training.seconds - self._began) and len(training.held_images):
             began = training.clock()
             self._reading = self._reading or ValidationReading(training)

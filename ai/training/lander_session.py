@@ -1,24 +1,20 @@
-"""Session of landers: what is seen of them, checkpoints to go back to, lessons, edits by hand."""
+"""Session of landers: what is seen of them, checkpoints to go back to, lessons."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from ai.environment import StepResult
 from ai.lander.environment import LanderEnv
-from ai.pilots.own import pay_by
-from ai.training.config import Config, in_force
-from ai.training.edits import EDITED, Edit, NetworkEditor
+from ai.training.config import in_force
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
 from ai.training.messages import DIVERGED, NetworkState, SwarmState
-from ai.training.session import Session, Turns
+from ai.training.session import Session
 from ai.training.tasks import Score
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -40,51 +36,19 @@ class LanderSession(Session[Training]):
         self.history.reward_scale = training.config.reward_scale
         training.on_step = self._on_step
         training.validation_pace = 1 + self.env.num_envs // 256
-        self._explanations, self._editor = Explanations(training), NetworkEditor(training.agent)
+        self._explanations = Explanations(training)
         self._swarm_state = self._swarm_state_now()
         self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.gradient_steps
-        self.paid_by = ""  # the player's own file, if not the usual pay
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
-
-    @classmethod
-    def live(
-        cls, config: Config, seed: int = 0, *, pay: Path | None = None, pays: Sequence[Path] = (), **options: Any
-    ) -> Turns:
-        """Lead a session, made as by `of`; every turn is one decision of all landers.
-
-        `pay` is a file of the player's own that pays in place of the usual pay; validations keep that. A run that goes
-        on is paid by its own file, if that is among the player's `pays`; else `lost` says that it is not. Raises
-        PilotError for what is wrong with it, and ValueError for settings that are not a lander's.
-        """
-        session = cls.of(config, seed, **options)
-        training = session.training
-        if before := training.around.get("paid_by"):  # of a run that goes on
-            pay = next((each for each in pays if str(each) == before), None)
-            if pay is None:
-                unpaid = f"{Path(str(before)).name} paid it, and is not there: it goes on with the usual pay"
-                training.lost = "; ".join(filter(None, (training.lost, unpaid)))
-        with ExitStack() as ends:
-            if pay:
-                session.paid_by = str(pay)
-                ends.callback(pay_by(session.env, pay))
-            yield from session.lead()
 
     @property
     def _checkpoint_every(self) -> int:
         """Decisions between checkpoints: sparser as the run gets longer, so that the first hours keep them all."""
         return max(40 * self.env.num_envs, 2_500, self.training.agent.decisions // 50)
-
-    @property
-    def keeps_still(self) -> bool:
-        """Whether a network is edited: that is only looked at, until it learns on from there."""
-        return self.training.agent.paused
-
-    def around(self) -> dict[str, Any]:
-        return {"paid_by": self.paid_by}
 
     def show(self) -> None:
         agent, training = self.training.agent, self.training
@@ -104,7 +68,7 @@ class LanderSession(Session[Training]):
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self.record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at and not self.keeps_still:
+        if progress.decisions >= self._checkpoint_at:
             self.record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
@@ -118,15 +82,8 @@ class LanderSession(Session[Training]):
 
     def go_back(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
-        self._editor.forget()
         self.training.diverged = True
         self.history.checkpoints[-1].restore(self.training.agent)
-
-    def end(self) -> None:
-        """Keep what has not been kept, without an edit that was only looked at."""
-        if self.keeps_still:
-            self._editor.undo(every=True)
-        super().end()
 
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = self._swarm_state_now()
@@ -143,7 +100,7 @@ class LanderSession(Session[Training]):
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
-        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
+        learnt = 1.0 if agent.gradient_steps > self._began_learning else np.nan
         _, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
@@ -173,36 +130,13 @@ class LanderSession(Session[Training]):
         """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
         self.messages.append(self._explanations.explain(slot, decisions))
 
-    def _edit(self, edit: Edit) -> None:
-        """Edit the network."""
-        self._edited(lambda editor: editor.apply(edit))
-
-    def _undo(self, every: bool = False) -> None:
-        """Undo the last edit, or every one since the network was as it had learnt."""
-        self._edited(lambda editor: editor.undo(every=every))
-
-    def _learn_on(self) -> None:
-        """Learn again, from the network as it was edited."""
-        self._edited(NetworkEditor.learn_on)
-
-    def _edited(self, change: Callable[[NetworkEditor], None]) -> None:
-        editor, before = self._editor, self._editor.count
-        change(editor)
-        if editor.count != before:
-            self.record_change(EDITED, before, editor.count)
-        self.messages.append(editor.edits)
-        self.show()
-
     def _restore(self, decisions: int) -> None:
         """Restore the networks from the history's checkpoint of a moment; time does not go back."""
         checkpoint = self.history.checkpoint_at(decisions)
         if checkpoint is None:
             raise ValueError("this run has no checkpoints yet")
-        self._editor.forget()
         checkpoint.restore(self.training.agent)
         self.record_change(REVERTED, None, checkpoint.decisions)
-        self.messages.append(self._editor.edits)
         self.show()
 
     commands = Session.commands | {"save": save, "restore": _restore, "explain": _explain}
-    commands |= {"edit": _edit, "undo": _undo, "learn_on": _learn_on}

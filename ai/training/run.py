@@ -48,7 +48,6 @@ def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
     if state is not None:
         with going_on(folder):
             run.load_state(state)
-            run.around = dict(state["around"])
     elif kind.needs_state:
         raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
     else:
@@ -63,7 +62,7 @@ def save(run: Run, folder: str | Path, final: bool = False, *, state: bool = Tru
     Raises OSError if it cannot be written, and ValueError, with the disk left as it was, if the numbers of the
     network are not finite.
     """
-    return _copied(run, Path(folder), run.around if state else None, final)[0]()
+    return _copied(run, Path(folder), state, final)[0]()
 
 
 class Limit:
@@ -91,19 +90,11 @@ class Keeper:
     """Keeps a run in its own folder now and then, and in any other when asked.
 
     A thread writes, while training goes on; the run stands still for what is copied, for a hundredth of its time at
-    most. Without a folder of its own (None), a run is kept only where that is asked for. `around` gives what whoever
-    leads the run keeps in its state, for `Run.around`.
+    most. Without a folder of its own (None), a run is kept only where that is asked for.
     """
 
-    def __init__(
-        self,
-        run: Run,
-        folder: Path | None,
-        history: History | None = None,
-        around: Callable[[], dict[str, Any]] | None = None,
-    ) -> None:
+    def __init__(self, run: Run, folder: Path | None, history: History | None = None) -> None:
         self._run, self._folder, self._history = run, folder, history
-        self._around = around or (lambda: run.around)
         self._saved_at = run.moment  # as on the disk
         self._due = run.clock() + FIRST_SECONDS
         self._problem = ""
@@ -149,22 +140,22 @@ class Keeper:
         """Begin to write; return what will come of it, and how many bytes its state has."""
         if folder == self._folder:
             self._saved_at = self._run.moment
-        write, size = _copied(self._run, folder, self._around(), final, self._history)
+        write, size = _copied(self._run, folder, True, final, self._history)
         return self._thread.submit(write), size
 
 
 def _copied(
-    run: Run, folder: Path, around: dict[str, Any] | None, final: bool, history: History | None = None
+    run: Run, folder: Path, goes_on: bool, final: bool, history: History | None = None
 ) -> tuple[Callable[[], dict[str, Any]], int]:
-    """Copy what is to be kept of a run, and of what is `around` it; return what writes that while training goes on.
+    """Copy what is to be kept of a run; return what writes that while training goes on.
 
     That writes the state first, then the network's folder, whole or not at all, and at last deletes the state before;
-    it returns what the training file says. Where there is nothing to go on from (None), no state is left. Beside it
+    it returns what the training file says. Of a run that is not to go on, no state is left. Beside it
     is returned how many bytes the state has.
     """
     moment, state = run.moment, None
-    if around is not None and not run.diverged and not run.done:
-        state = run.state() | {"around": around}
+    if goes_on and not run.diverged and not run.done:
+        state = run.state()
     described, write_networks = run.snapshot(final)
     history = None if history is None else history.copy()
 

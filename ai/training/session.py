@@ -45,7 +45,7 @@ class Session(ABC, Generic[R]):
     def __init__(self, training: R, keep: Path | None, source: Path | None) -> None:
         self.training, self.keep = training, keep
         self.history = History.read(source, self.columns) if source else History(self.columns)
-        self.keeper = Keeper(training, keep, self.history, self.around)
+        self.keeper = Keeper(training, keep, self.history)
         self.messages: list[Any] = []
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
@@ -80,15 +80,6 @@ class Session(ABC, Generic[R]):
     def tell(self, progress: Any) -> None:
         """Tell of a step that was taken."""
 
-    def around(self) -> dict[str, Any]:
-        """Return what the session goes on from, besides the run: `Run.around` of one that goes on."""
-        return {}
-
-    @property
-    def keeps_still(self) -> bool:
-        """Whether the run is not to be kept as it is now."""
-        return False
-
     def last_words(self) -> Iterator[None]:
         """Do what is left when no more steps are taken, in as many turns as it likes."""
         yield
@@ -120,8 +111,7 @@ class Session(ABC, Generic[R]):
             while not (training.done or command == ("finish",)):
                 if command is None:
                     self.tell(step(training))
-                    if not self.keeps_still:
-                        self.messages += self.keeper.go_on(training.clock())
+                    self.messages += self.keeper.go_on(training.clock())
                 command = yield self._answer(command)
             for _ in self.last_words():
                 while command is not None:

@@ -130,7 +130,6 @@ class _Service:
         self._connection = connection
         self._orders: SimpleQueue[Order] = SimpleQueue()
         self.terminated = self._stopped = self._paused = False
-        self._steps = 0  # single turns requested during a pause
         self._taken = 0  # turns so far, besides those of commands
         self._limit: int | None = None  # of these turns: then it waits
         self._idle = False  # whether the generator has nothing to do before the next command
@@ -155,7 +154,6 @@ class _Service:
                 now = time.monotonic()
                 if not self._stopped and self._seconds_to_turn(now) == 0.0:
                     self._due = max(self._due + self._period, now)
-                    self._steps = max(0, self._steps - 1)
                     self._taken += 1
                     self._keep(next(turns))
         except StopIteration:
@@ -169,10 +167,8 @@ class _Service:
 
     def _seconds_to_turn(self, now: float) -> float | None:
         """Seconds until the next turn is due, or None while paused, idle or at the limit."""
-        if self._idle:
+        if self._idle or self._paused:
             return None
-        if self._paused:
-            return 0.0 if self._steps else None
         if self._limit is not None and self._taken >= self._limit:
             return None
         return max(0.0, self._due - now) if self._period else 0.0
@@ -205,9 +201,7 @@ class _Service:
             case "pause", _:
                 self._paused = True
             case "resume", _:
-                self._paused, self._steps = False, 0
-            case "step", _:
-                self._steps += 1
+                self._paused = False
             case "pace", per_second:
                 self._period, self._due = (1.0 / per_second if per_second else 0.0), time.monotonic()
             case "limit", turns_in_all:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
@@ -81,8 +81,7 @@ class NetworkPlan:
     """Snapshot of a network for drawing: columns of shown units, and the weights of the links between them.
 
     At most `most` units of a layer are shown: the most important by their weights, with a preference for those of the
-    plan `before`; the units `pinned`, by stage and number, come first. Everything is copied, so the network may change
-    afterwards.
+    plan `before`. Everything is copied, so the network may change afterwards.
     """
 
     def __init__(
@@ -91,7 +90,6 @@ class NetworkPlan:
         observation: npt.ArrayLike | None,
         most: int,
         before: NetworkPlan | None = None,
-        pinned: Collection[tuple[int, int]] = (),
     ) -> None:
         found = links(network)
         sizes = [len(found[0].weights), *(len(link.bias) for link in found)] if found else []
@@ -100,9 +98,7 @@ class NetworkPlan:
         self.columns: list[Column] = []
         for stage, size in enumerate(sizes):
             strength = _strength(found, stage)
-            wanted = strength.copy()
-            wanted[[unit for at, unit in pinned if at == stage and unit < size]] = np.inf
-            units = steady_choice(wanted, most, old.columns[stage].units if old else None)
+            units = steady_choice(strength, most, old.columns[stage].units if old else None)
             shown = values[stage][units].astype(float)
             damaged = ~np.isfinite(strength[units]) | (~np.isfinite(shown) if known else False)
             bias = found[stage - 1].bias[units].astype(float) if stage else None

@@ -49,7 +49,6 @@ class NetworkView:
         self.edges: list[Edge] = []
         self.reads_out = True  # whether a unit's value is written beside it while it is highlighted
         self.redraws = 0  # number of times that the sheets were painted
-        self.pinned: frozenset[tuple[int, int]] = frozenset()  # stage and number of units to be shown in any case
         self._show: Show = "weights"
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
         self.hovered: tuple[int, int] | None = None  # column and place in it of the highlighted unit
@@ -82,7 +81,7 @@ class NetworkView:
     def set(self, network: NeuralNetwork, observation: npt.ArrayLike | None = None) -> None:
         """Show a network's current state, and its activations for an observation (inputs,) already normalised."""
         self._given = network, observation
-        self.plan = NetworkPlan(network, observation, self._most_units, self.plan, self.pinned)
+        self.plan = NetworkPlan(network, observation, self._most_units, self.plan)
         self.centres = self._lay_out()
         if self.hovered and self.hovered not in self._places():
             self.hovered = None

@@ -31,7 +31,6 @@ from ai.files import (
 from ai.flights.recording import LONGEST, STEPS, End, LegAsList, Recording, Shares, Start, StickHolder
 from ai.flights.verification import COURSES
 from ai.lander.environment import NUM_ACTIONS, Outcome
-from ai.lander.missions import MISSIONS
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.core import texts
 
@@ -70,7 +69,6 @@ class Entry:
     medal: _Number = 0  # 3 for gold, 2, 1, and 0 for none
     file: Annotated[str, Sized(LONGEST_NAME), _plain_name] = ""  # for a replay
     pace: _Figure = 1.0  # slowest time scale during the flight; 1 is normal
-    rules: _Number = 0  # version of its mission's rules at the time, from `rules_of`
     barred: _Name = ""  # why it does not count, a key of `texts.NOT_COUNTED`; empty if it does, or nobody noted it yet
     guarded: Share = 0.0  # assist of the guardian by futures that watched over all of it; 0 for none
     intact: bool = False  # whether it came down whole beside the pad; its outcome is CRASHED
@@ -84,15 +82,8 @@ class Entry:
         return self.spawn in RUNGS
 
     @property
-    def outdated(self) -> bool:
-        """Whether its mission's rules have changed since; then it is not ranked, and its medal is void."""
-        return self.rules != rules_of(self.course)
-
-    @property
     def bar(self) -> str:
         """Reason why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty if it does."""
-        if self.outdated:
-            return "outdated"
         if self.barred in texts.NOT_COUNTED:
             return self.barred
         return "" if self.alone else "unknown"
@@ -101,11 +92,6 @@ class Entry:
     def landed(self) -> bool:
         """Whether the flight ended in a landing."""
         return self.outcome == Outcome.LANDED.name
-
-
-def rules_of(challenge: str) -> int:
-    """Return the present version of a mission's rules."""
-    return MISSIONS[challenge].rules if challenge in MISSIONS else 0
 
 
 def lines_of(kind: type[T], path: Path, most: int) -> tuple[list[T], str]:
@@ -175,7 +161,7 @@ def from_text(text: str) -> Record:
     """Parse the output of `to_text`; raises ValueError for anything else, which names all that is wrong."""
     values = parse_json(text)
     try:
-        check_header(values, FORMAT, (VERSION,))
+        check_header(values, FORMAT, VERSION)
     except ValueError as error:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
     file = read_as(_FlightFile, values)

@@ -44,7 +44,6 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
         human=round(flight.share, 4),
         pads=len(env.ground.pads),
         score=landing_score(env),
-        rules=flight_file.rules_of(more.get("course", "")),
         leg=flight.recording.leg.number if flight.recording.leg else 0,
         **more,
     )
@@ -138,11 +137,11 @@ def longest_descent(entries: Iterable[Entry]) -> list[Entry]:
 def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
     """Return up to `most` best landings of each mission by the person alone that can be replayed.
 
-    Landings under other rules are ranked separately, like another mission, and so are those from the ladder.
+    Landings from the ladder are ranked separately, like another mission.
     """
 
-    def kind(entry: Entry) -> tuple[str, int, int, bool]:
-        return entry.course, entry.pads, entry.rules, entry.on_ladder
+    def kind(entry: Entry) -> tuple[str, int, bool]:
+        return entry.course, entry.pads, entry.on_ladder
 
     own = (entry for entry in entries if entry.landed and entry.alone and entry.file)
     return [entry for _, each in groupby(sorted(own, key=kind), kind) for entry in sorted(each, key=rank)[:most]]

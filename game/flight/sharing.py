@@ -25,7 +25,7 @@ DROPPED: Final = 1_000_000  # bytes of a file that is dropped on the window, at 
 def shared(record: Record) -> SharedFlight:
     """Return a record as it is sent to a friend."""
     entry = record.entry
-    claim = Claim(Outcome[entry.outcome], entry.score, record.end, 0 if entry.outdated else entry.medal)
+    claim = Claim(Outcome[entry.outcome], entry.score, record.end, entry.medal)
     course = entry.course or record.recording.mission
     return SharedFlight(record.recording, claim, course, entry.bar if not entry.alone else "")
 
@@ -42,7 +42,7 @@ def record_of(flight: SharedFlight, when: float) -> Record:
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
     entry = Entry(
         when, claim.outcome.name, seconds, 0.0, 0.0, round(by_hand, 4), pads=recording.pads, score=claim.points,
-        course=flight.course, barred=flight.barred, rules=flight_file.rules_of(recording.mission),
+        course=flight.course, barred=flight.barred,
     )  # fmt: skip
     return Record(recording, entry, claim.end)
 

@@ -7,14 +7,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-from ai.digits.filters import FilterMoment
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
 from ai.training.config import InForce
-from ai.training.edits import NetworkEdits
 from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
@@ -24,20 +22,20 @@ from game.core.worker import Worker, WorkerState
 from game.training.record import EarlierRun, Record, put_beside
 from game.training.run_settings import RunKind
 
-# Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
-PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
+# Decisions of each lander per second, slow as in real flight, and as fast as possible.
+PACES: Final[tuple[float | None, ...]] = (15.0, None)
 SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
 NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
-    DigitLesson: "lesson", Confusion: "confusion", NetworkEdits: "edits",
+    DigitLesson: "lesson", Confusion: "confusion",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
-_KEPT: Final = {SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters"} | _ENTRIES
+_KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
-_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits", "in_force"
+_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "in_force"
 _BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
 
 
@@ -52,10 +50,8 @@ class TrainingRun:
 
     Attributes:
         runs: number of runs so far.
-        pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
-        pays: all such files, one of which may have paid a run that goes on.
-        swarm_state, network_state, in_force, lesson, confusion, edits: the latest message of each kind.
-        swarms, networks, filters: those of the whole run, as far as they were kept.
+        swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind.
+        swarms, networks: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
         keeps: whether a run is kept while it has no name.
@@ -70,8 +66,6 @@ class TrainingRun:
         self._worker: Worker | None = None
         self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
-        self.pay: Path | None = None
-        self.pays: tuple[Path, ...] = ()
         self.config: Any = kind.of()
         self.seed, self.begun = 0, False
         self.earlier: list[EarlierRun] = []
@@ -92,8 +86,6 @@ class TrainingRun:
         self.lesson: Any = None
         self.confusion: Confusion | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
-        self.filters: list[FilterMoment] = []
-        self.edits = NetworkEdits()
         self.steps, self.stopping = 0, False  # 0 before it has reported them, or without end
         self.test: float | None = None  # accuracy on the test images, of digits that were measured
         self.kept_epoch: int | None = None  # of the tested network, if that is not the last one
@@ -114,7 +106,7 @@ class TrainingRun:
 
     @property
     def alive(self) -> bool:
-        """Whether there is a run that can be paused, stepped, stopped and changed."""
+        """Whether there is a run that can be paused, stopped and changed."""
         return self.state in (WorkerState.STARTING, WorkerState.RUNNING, WorkerState.PAUSED)
 
     @property
@@ -180,9 +172,7 @@ class TrainingRun:
                 self.collection.discard_rescued()
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        pay: dict[str, Any] = {"pays": self.pays} if resume else {"pay": self.pay}
-        pay = {name: each for name, each in pay.items() if each}  # runs of digits are never paid
-        self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
+        self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
         return " ".join(notes)
@@ -291,17 +281,6 @@ class TrainingRun:
             self.test, self.kept_epoch = saved.test, saved.epoch
         return ""
 
-    def compare(self, name: str, folder: Path) -> str:
-        """Show a saved run's curves beside this one's; return a note for the player, or ""."""
-        try:
-            history = History.read(folder, self.kind.session.columns)
-        except ModelFormatError as error:
-            return str(error)
-        if not len(history):
-            return texts.TRAIN_NO_CURVES.format(name=name)
-        put_beside(self.earlier, name, history)
-        return ""
-
     # Requests
 
     def ask(self, name: str, *arguments: Any) -> None:
@@ -329,11 +308,6 @@ class TrainingRun:
         """Go on with both."""
         self._order(Worker.resume, both=True)
 
-    def step(self) -> None:
-        """Take one learning step of both, then pause."""
-        self._order(Worker.pause, both=True)
-        self._order(Worker.step, both=True)
-
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES` for both, by its index."""
         self.pace = index
@@ -346,7 +320,7 @@ class TrainingRun:
         note = self.begin(config, seed, name=name)
         # It writes nothing to the disk: its twin has the place of the run without a name.
         self.twin, self.differing = TrainingRun(self.kind, self.collection, keeps=False), differing
-        self.twin.pace, self.twin.pay = self.pace, self.pay
+        self.twin.pace = self.pace
         self.twin.begin(experiment, seed)
         self._keep_in_step()
         return note

@@ -11,63 +11,16 @@ from game.core.scene import Transition
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK
 from game.ui.chart import Chart
-from game.ui.plotting import Limits
 from game.ui.widget import OnPress, Widget
 
-MOST: Final = 64.0  # times that the axis can be stretched
-STEP: Final = 1.25  # times for a notch of the wheel, or a press of + or -
-_ZOOMS: Final = {
-    **dict.fromkeys((pygame.K_PLUS, pygame.K_EQUALS, pygame.K_KP_PLUS), 2),
-    **dict.fromkeys((pygame.K_MINUS, pygame.K_KP_MINUS), -2),
-    **dict.fromkeys((pygame.K_0, pygame.K_KP_0), 0),
-}
 _RING: Final = (12, 8)  # points by which the focus ring is wider and higher than the charts
 
 
-class Zoom:
-    """Part of an axis from 0 to its `end`, which grows as a run goes on; a part that reaches the end goes with it."""
-
-    def __init__(self) -> None:
-        self.end = 1.0
-        self.reset()
-
-    def reset(self) -> None:
-        self.factor, self._middle = 1.0, 1.0  # the middle in units of the axis; the end, if it is beyond that
-
-    @property
-    def shown(self) -> Limits:
-        """Ends of the part that is shown."""
-        half = self.end / self.factor / 2
-        middle = min(max(self._middle, half), self.end - half)
-        return middle - half, middle + half
-
-    def by(self, factor: float, about: float | None = None) -> None:
-        """Stretch the axis by a factor; `about`, by default the middle, stays where it is."""
-        start, end = self.shown
-        held = (start + end) / 2 if about is None else about
-        share = (held - start) / (end - start)
-        follows = end >= self.end and about is None
-        self.factor = min(max(self.factor * factor, 1.0), MOST)
-        width = self.end / self.factor
-        self._middle = held + (0.5 - share) * width
-        if follows or self._middle + width / 2 >= self.end:
-            self._middle = float("inf")
-        if self.factor == 1.0:
-            self.reset()
-
-    def reach(self, x: float) -> None:
-        """Move the part so that x is in it."""
-        start, end = self.shown
-        if not start <= x <= end:
-            self._middle = x
-
-
 class Charts:
-    """Charts with a common x axis, cursor, marker and zoom, redrawn in turns; the mouse's wheel zooms."""
+    """Charts with a common x axis, cursor and marker, redrawn in turns."""
 
     def __init__(self, charts: Sequence[Chart]) -> None:
         self.charts = tuple(charts)
-        self.zoom = Zoom()
         self._gripped: Chart | None = None  # on which the mouse button was pressed
 
     def hover(self, point: Point | None) -> float | None:
@@ -81,17 +34,6 @@ class Charts:
         """Follow an event of the mouse or of a virtual pointer, its position in points."""
         if event.type == pygame.MOUSEMOTION:
             self.hover(event.pos)
-        elif event.type == pygame.MOUSEWHEEL:
-            pointed = next((chart.cursor for chart in self.charts if chart.pointed), None)
-            if pointed is not None:
-                self.zoom.by(STEP**event.y, pointed)
-
-    def zoom_by(self, steps: int) -> None:
-        """Stretch the axis by so many steps of the keys, or with 0 show the whole of it."""
-        if steps:
-            self.zoom.by(STEP**steps, self.charts[0].marker)
-        else:
-            self.zoom.reset()
 
     @property
     def box(self) -> pygame.Rect:
@@ -134,18 +76,13 @@ class Charts:
 
 
 class Scrubber(Widget):
-    """Scrubber over all charts. `on_move` gets an x, a float, or a step, the int -1 or 1.
+    """Scrubber over all charts. `on_move` gets an x, a float, or a step, the int -1 or 1."""
 
-    `on_zoom` gets how many steps to stretch the axis, or 0 for the whole of it.
-    """
-
-    def __init__(
-        self, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress, on_zoom: Callable[[int], None]
-    ) -> None:
+    def __init__(self, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress) -> None:
         # For the arrows, its box is the first row: the virtual pointer over all charts is reached from there.
         first, *others = (chart.box for chart in charts.charts)
         super().__init__(first.unionall([box for box in others if box.top == first.top]), "")
-        self._charts, self._on_move, self._on_press, self._on_zoom = charts, on_move, on_press, on_zoom
+        self._charts, self._on_move, self._on_press = charts, on_move, on_press
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
         return self._charts.box.collidepoint(hover_x, hover_y)
@@ -155,13 +92,6 @@ class Scrubber(Widget):
 
     def shift(self, direction: int) -> bool:
         self._on_move(direction)
-        return True
-
-    def take(self, event: pygame.event.Event) -> bool:
-        steps = _ZOOMS.get(event.key) if event.type == pygame.KEYDOWN else None
-        if steps is None:
-            return False
-        self._on_zoom(steps)
         return True
 
     def process_event(self, event: pygame.event.Event) -> bool:

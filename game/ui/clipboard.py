@@ -16,7 +16,7 @@ _LONGEST: Final = 1_000_000  # characters of what is pasted
 
 
 def pasted() -> str:
-    """Return the text in the clipboard; empty if there is none, or no clipboard."""
+    """Return the text in the clipboard; empty if there is none that is UTF-8, or no clipboard."""
     try:
         return str(pygame.scrap.get_text())[:_LONGEST]
     except (pygame.error, UnicodeDecodeError):

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import pygame
-from pygame_gui.core.utility import clipboard_paste
 from pygame_gui.elements import UITextEntryLine
 
 from game.drawing.tokens import FAINT, HUMAN, TEXT
 from game.input.controls import Command, translate
+from game.ui.clipboard import pasted
 from game.ui.widget import NOWHERE, OnPress, PointsManager, RowWidget
 
 if TYPE_CHECKING:
@@ -100,7 +100,8 @@ class TextLine(UITextEntryLine):
             return False
         try:
             if event.key == pygame.K_v and getattr(event, "mod", 0) & _CONTROL:
-                self.insert(clipboard_paste())  # type: ignore[no-untyped-call]
+                if text := pasted():
+                    self.insert(text)
                 return True
             return bool(super().process_event(event))
         except pygame.error:

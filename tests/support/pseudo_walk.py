@@ -41,7 +41,6 @@ from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.base import INSIDE
 from game.shell.app import App
 from game.training.record import put_beside
 from game.training.run import TrainingRun
@@ -52,7 +51,6 @@ from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
-from tests.support.networks import on_a_link
 from tests.support.pen import pad_of, stroke
 from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
@@ -80,26 +78,6 @@ def rewound(driver: Driver) -> None:
     driver.frames(20)
     rewind.go_to(run.history["decisions"][-1] / 2)
     driver.frames(5)
-
-
-def edited(driver: Driver) -> None:
-    """Silence a unit of the large network, and pick a link."""
-    trained(driver)
-    driver.top.open(INSIDE)
-    driver.frames(3)
-    driver.click(driver.top.inside.view.centres[1][2])
-    driver.frames(2)
-    driver.press_on(texts.EDIT_SILENCE)
-    driver.frames(3)
-    driver.click(on_a_link(driver.top.inside.view))
-    driver.frames(3)
-
-
-def edited_and_back(driver: Driver) -> None:
-    """Silence a unit, and go back to the swarm."""
-    edited(driver)
-    driver.key(pygame.K_ESCAPE)
-    driver.frames(3)
 
 
 def taught_to_read(driver: Driver) -> None:
@@ -234,8 +212,6 @@ STATES = [
     Stop("TrainScene", "training", trained),
     Stop("TrainScene", "an experiment", experimented),
     Stop("TrainScene", "an earlier moment", rewound),
-    Stop("TrainScene", "an edited network", edited),
-    Stop("TrainScene", "its swarm", edited_and_back),
     Stop("DigitTrainingScene", "training to read", taught_to_read),
     *(Stop("LessonScene", f"frame {number + 1}", frame(number)) for number in range(7)),
     Stop("PhysicsScene", "a law", measured),
@@ -253,7 +229,7 @@ STATES = [
             ("downhill", [], 340),
             ("backwards", [*[texts.LEARN_BACKWARDS_BACK] * 4, texts.LEARN_BACKWARDS_STEP], 2),
             ("pay", [texts.LEARN_PAY_TRAIN], 850),
-            ("moment", [texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO], 480),
+            ("choice", [], 480),
             ("target", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),
             ("memory", [texts.LEARN_MEMORY_START], SHORT_RUN + 5),
             ("daring", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -11,15 +9,14 @@ import pygame
 
 from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
-from ai.lander.rewards import REWARDS, RewardWeights
-from ai.pilots.child import PAY
+from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.history import Checkpoint
 from ai.training.lander_session import LanderSession
 from ai.training.messages import SwarmState
 from engine import DT
 from game.core import texts
-from game.core.scene import Route, push
+from game.core.scene import Route
 from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
@@ -92,7 +89,6 @@ class PayChapter(Chapter):
 
     Attributes:
         pay: key of the chosen pay.
-        own: the player's own file that pays in its place; None without one.
         decisions: how many the run has taken.
         trial: the flights after it; None before.
         results: by key of a pay, how its flights ended.
@@ -110,7 +106,6 @@ class PayChapter(Chapter):
 
     def restart(self) -> None:
         self.pay, self.tried = ASKED, False
-        self.own: Path | None = None
         self.results: dict[str, Flown] = {}
         self._clear()
 
@@ -139,13 +134,10 @@ class PayChapter(Chapter):
         keys = list(PAYS)
         column.choice("", [texts.LEARN_PAY_NAMES[key] for key in keys], keys.index(self.pay), self.choose)
         column.text(self._paid, size=SMALL, colour=HUMAN)
-        column.button(texts.PILOTS_WORDS["pay"][0], lambda: push("pilots", self._choose_own, PAY, self.own))
         column.button(texts.LEARN_PAY_STOP if self.learning else texts.LEARN_PAY_TRAIN, self.train)
 
     def _paid(self) -> str:
         """Return what the chosen pay is."""
-        if self.own:
-            return self.own.name
         pay = PAYS[self.pay]
         return texts.LEARN_PAY_POINTS.format(
             second=points(pay.time / DT, 0),
@@ -156,11 +148,7 @@ class PayChapter(Chapter):
 
     def choose(self, index: int) -> None:
         """Choose a pay, an index into `PAYS`."""
-        self.pay, self.own, self.changed = list(PAYS)[index], None, True
-        self._clear()
-
-    def _choose_own(self, path: Path | None) -> None:
-        self.own, self.changed = path, True
+        self.pay, self.changed = list(PAYS)[index], True
         self._clear()
 
     def train(self) -> None:
@@ -170,7 +158,7 @@ class PayChapter(Chapter):
             self.close()
             return
         self._clear()
-        self._worker = Worker(LanderSession.live, config_of(PAYS[self.pay]), self._runs, pay=self.own)
+        self._worker = Worker(LanderSession.live, config_of(PAYS[self.pay]), self._runs)
         self._runs += 1
 
     def update(self) -> None:
@@ -196,7 +184,7 @@ class PayChapter(Chapter):
         for _ in range(_PACE):
             trial.step()
         if trial.over:
-            self.results[self.own.name if self.own else self.pay], self.tried, self.changed = trial.flown(), True, True
+            self.results[self.pay], self.tried, self.changed = trial.flown(), True, True
 
     def verdict(self) -> int | None:
         """Return what most flights did on the pay of the question: land, fly on, or crash; None before it was tried."""
@@ -207,14 +195,14 @@ class PayChapter(Chapter):
 
     def why(self) -> str:
         return " ".join(
-            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES.get(key, key), count=FLIGHTS, **flown)
+            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES[key], count=FLIGHTS, **flown)
             for key, flown in self.results.items()
         )
 
-    def code(self) -> Sequence[Code]:
+    def code(self) -> Code:
         pay = PAYS[self.pay]
-        weights = texts.LEARN_PAY_NOTE.format(time=points(pay.time / DT, 0), terminal=points(pay.terminal, 0))
-        return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
+        note = texts.LEARN_PAY_NOTE.format(time=points(pay.time / DT, 0), terminal=points(pay.terminal, 0))
+        return Code(LanderEnv.step, "parts", note)
 
     def below(self, column: Column) -> None:
         column.bar(lambda: self.decisions / DECISIONS)

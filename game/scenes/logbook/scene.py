@@ -73,7 +73,7 @@ class LogbookScene(PanelScene):
         newest = self._entries[::-1]
         if self._filter == 1:
             return [entry for entry in newest if entry.landed]
-        return [entry for entry in best(newest) if not entry.outdated] if self._filter else newest
+        return best(newest) if self._filter else newest
 
     def _describe_chosen(self, column: Column) -> None:
         """Add what can be done with the chosen flight, who flew it, and why it does not count."""

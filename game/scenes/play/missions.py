@@ -143,5 +143,5 @@ def _landed_together(entries: list[Entry]) -> set[str]:
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
     """Return the player's best unaided landing in each named challenge, under the current rules."""
-    landings = [entry for entry in entries if entry.course and entry.alone and entry.landed and not entry.outdated]
+    landings = [entry for entry in entries if entry.course and entry.alone and entry.landed]
     return {entry.course: entry for entry in sorted(landings, key=rank, reverse=True)}

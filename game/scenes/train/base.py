@@ -250,10 +250,9 @@ class TrainingScene(FormScene, ABC):
         self.run.collection.release()
 
     def actions(self) -> Table:
-        """Go back; step, start or pause, as the buttons say."""
+        """Go back; start or pause, as the button says."""
         return [
             self.form.goes_back(self._back_hint),
-            Action(Command.STEP, self.run.step),
             Action(Command.HANDOVER, self._toggle),
             self.explained.action(),
         ]

@@ -1,4 +1,4 @@
-"""Charts of a run, with other runs for comparison; a marker chooses a moment of it."""
+"""Charts of a run over its seconds, with other runs for comparison; a marker chooses a moment of it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from ai.environment import Doubles
 from ai.training.captions import Caption, caption
 from ai.training.config import Config
 from ai.training.curves import RecentCurves
-from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from game.core import texts
 from game.drawing import prose
@@ -30,28 +29,27 @@ from game.ui.charts import Charts
 from game.ui.curves import run_style
 from game.ui.plotting import Limits
 
-AXES: Final = ("seconds", "decisions")  # what the horizontal axis counts: see texts.TRAIN_AXES
-BY_DECISIONS: Final = 1
+LANDINGS: Final = "success"  # the chart of the share that lands
 SCORE: Final = "mean_return"  # the chart of what a flight earns
 FEW_CHARTS: Final = 2
 STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
 _TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
-_SHORTEST: Final = (10.0, 1_000.0)  # that the axis spans at least
+_SHORTEST: Final = 10.0  # seconds that the axis spans at least
 _DASH: Final = (5.0, 4.0)  # of a second curve
 _WIDE: Final = 300.0  # points of a chart with room for one line in a line
 _SIZE: Final = LABEL - 1.0  # of captions
 _LEADING: Final = 12.0
 _DROP: Final = 12.0  # from the bottom of a chart to the first baseline of its caption
-Line = tuple[Doubles, Doubles]  # of a curve: places on the axis, and values
+Line = tuple[Doubles, Doubles]  # of a curve: seconds, and values
 
 
 class ChartKind(NamedTuple):
     """One chart of a kind of run.
 
     Attributes:
-        curve: returns the curve of a history, by the name of the axis.
+        curve: returns the curve of a history.
         form: how a value is written.
         limits: of the vertical axis; None where it follows the numbers.
         log: whether that is logarithmic.
@@ -61,30 +59,30 @@ class ChartKind(NamedTuple):
 
     """
 
-    curve: Callable[[History, str], Line]
+    curve: Callable[[History], Line]
     form: str
     limits: Limits | None = None
     log: bool = False
     smooth: bool = True
-    second: Callable[[History, str], Line] | None = None
+    second: Callable[[History], Line] | None = None
     words: Callable[[], tuple[str, str]] = lambda: ("", "")
 
 
-def _column(name: str, times: float = 1.0) -> Callable[[History, str], Line]:
-    return lambda history, across: (history[across], times * history[name])
+def _column(name: str, times: float = 1.0) -> Callable[[History], Line]:
+    return lambda history: (history["seconds"], times * history[name])
 
 
-def _expected(history: History, across: str) -> Line:
-    return history[across], in_points(history["mean_q"], history.reward_scale)
+def _expected(history: History) -> Line:
+    return history["seconds"], in_points(history["mean_q"], history.reward_scale)
 
 
-def _held_out(history: History, _: str) -> Line:
+def _held_out(history: History) -> Line:
     scores = history.validations
     return np.array([each.seconds for each in scores]), np.array([100.0 * each.success for each in scores])
 
 
 LANDER_CHARTS: Final = {
-    "success": ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
+    LANDINGS: ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
     SCORE: ChartKind(
         _column(SCORE), "{:z.0f}", second=_expected, words=lambda: (texts.TRAIN_EXPECTED, texts.TRAIN_SCORES)
     ),
@@ -103,11 +101,11 @@ DIGIT_CHARTS: Final = {
 }
 
 
-class ChartCaptions:
-    """One caption for each chart, read together with the chart's number and painted in the same frame as that.
+class LandingsCaption:
+    """Caption of the chart of landings, read together with its number and painted in the same frame as that.
 
     Attributes:
-        shown: caption of each chart that has one, by its name.
+        shown: the caption; None without one.
 
     """
 
@@ -116,21 +114,19 @@ class ChartCaptions:
 
     def clear(self) -> None:
         """Reset for another run."""
-        self.shown: dict[str, Caption] = {}
-        self._since: dict[str, float] = {}
+        self.shown: Caption | None = None
+        self._since = 0.0
 
-    def read(self, chart: str, history: History, config: Config, hint: str) -> str:
-        """Return a chart's caption, beside the hint that is shown, by its name; empty where no rule is sure."""
-        now = float(history["seconds"][-1]) if len(history) else 0.0
-        before = self.shown.pop(chart, None)
-        stays = before.name if before and now - self._since[chart] < STAY else ""
-        found = caption(chart, RecentCurves(history, config), hint, stays)
+    def read(self, history: History, config: Config, hinted: bool) -> str:
+        """Return the caption beside a hint, or without one; empty where no rule is sure."""
+        now, before = float(history["seconds"][-1]) if len(history) else 0.0, self.shown
+        stays = before.name if before and now - self._since < STAY else ""
+        self.shown = found = caption(RecentCurves(history, config), hinted=hinted, shown=stays)
         if found is None:
             return ""
         if before is None or before.name != found.name:
-            self._since[chart] = now
-        self.shown[chart] = found
-        return texts.CHART_CAPTIONS[chart][found.name].format(**found.values).replace("-", "−")
+            self._since = now
+        return texts.CHART_CAPTIONS[found.name].format(**found.values)
 
 
 @dataclass(frozen=True)
@@ -150,11 +146,10 @@ class Beside:
 
 
 class TrainingCharts(Charts):
-    """Charts over one axis, seconds or decisions.
+    """Charts over the seconds of a run.
 
     Attributes:
         moment: the moment under the marker, in decisions; None for now.
-        axis: index into `AXES`.
 
     """
 
@@ -166,7 +161,7 @@ class TrainingCharts(Charts):
             for name, kind in kinds.items()
         ]  # fmt: skip
         super().__init__(self._all)
-        self._turn = self.axis = 0
+        self._turn = 0
         self.show(more=False)
         self.clear()
 
@@ -184,15 +179,7 @@ class TrainingCharts(Charts):
         self._history = History()
         self.moment: int | None = None
         self.mark(None)
-        self.zoom.reset()
         self._contents: list[object] = [None] * len(self._all)  # what is shown in each chart
-
-    def measure_by(self, axis: int) -> None:
-        """Switch the charts to another horizontal axis."""
-        self.axis = axis
-        for chart in self._all:
-            chart.read_x = texts.TRAIN_AXIS[axis].format
-        self.zoom.reset()
 
     def look(self, history: History, beside: Beside = Beside(), say: Callable[[str], str] = lambda _: "") -> bool:
         """Read new points of a run and of those beside it, for one chart; call it once a frame.
@@ -210,7 +197,7 @@ class TrainingCharts(Charts):
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
         counts = len(history), len(history.validations), len(history.setting_changes)
-        contents = counts, shown, self.axis, self.zoom.shown
+        contents = counts, shown
         if self._contents[number] == contents:
             return False
         self._contents[number] = contents
@@ -220,32 +207,23 @@ class TrainingCharts(Charts):
         return True
 
     def _set(self, name: str, chart: Chart, runs: Sequence[EarlierRun], said: str) -> None:
-        kind, across = self._kinds[name], AXES[self.axis]
+        kind = self._kinds[name]
         series = []
         for each in runs:
             colour, dash = run_style(each.style)
-            series.append(Series(*kind.curve(each.run, across), each.name, colour, dash, kind.smooth))
+            series.append(Series(*kind.curve(each.run), each.name, colour, dash, kind.smooth))
         if kind.second and len(runs) == 1 and len(self._history):
-            series.append(Series(*kind.second(self._history, across), kind.words()[0], HUMAN, _DASH))
+            series.append(Series(*kind.second(self._history), kind.words()[0], HUMAN, _DASH))
             said = f"{self._both(kind)}\n{said}".strip()
         ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
-        self.zoom.end = max([_SHORTEST[self.axis], *ends])
-        first = chart is self.charts[0]
-        ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(self._history)] if first else ()
-        chart.set(series, self.zoom.shown, ticks, said)
+        ticks = ticks_of(self._history) if chart is self.charts[0] else ()
+        chart.set(series, (0.0, max([_SHORTEST, *ends])), ticks, said)
 
     def _both(self, kind: ChartKind) -> str:
         """Say what both curves of a chart are, by their latest numbers; empty before there are any."""
         curves = (kind.curve, kind.second or kind.curve)
-        latest = [float(curve(self._history, AXES[self.axis])[1][-1:].sum()) for curve in curves]
+        latest = [float(curve(self._history)[1][-1:].sum()) for curve in curves]
         return kind.words()[1].format(*latest).replace("-", "−") if all(map(math.isfinite, latest)) else ""
-
-    def _place(self, seconds: float) -> float:
-        """Return the place of a moment of the current run on the axis."""
-        history = self._history
-        if self.axis == 0 or not len(history):
-            return seconds
-        return float(np.interp(seconds, history["seconds"], history[AXES[self.axis]]))
 
     def _mark(self, moment: int) -> None:
         """Put the marker at a moment."""
@@ -253,10 +231,7 @@ class TrainingCharts(Charts):
             self.mark(None)
             return
         seconds = float(np.interp(moment, self._history["decisions"], self._history["seconds"]))
-        place = self._place(seconds)
-        if place != self.charts[0].marker:
-            self.zoom.reach(place)
-        self.mark(place, texts.REWIND_MARK.format(seconds=seconds))
+        self.mark(seconds, texts.REWIND_MARK.format(seconds=seconds))
 
     def go_to(self, moment: int | None) -> None:
         """Put the marker at a moment, in decisions; None takes it away."""
@@ -264,12 +239,12 @@ class TrainingCharts(Charts):
         if moment is None:
             self.mark(None)
 
-    def decisions_at(self, place: float) -> float:
-        """Return the moment of the current run, in decisions, at a place on the axis; infinite beyond its end."""
+    def decisions_at(self, seconds: float) -> float:
+        """Return a moment of the current run in decisions; infinite beyond its end."""
         history = self._history
-        if not len(history) or place >= float(history[AXES[self.axis]][-1]):
+        if not len(history) or seconds >= float(history["seconds"][-1]):
             return math.inf
-        return float(np.interp(place, history[AXES[self.axis]], history["decisions"]))
+        return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
     @property
     def landed(self) -> tuple[str, ...]:
@@ -290,7 +265,7 @@ class TrainingCharts(Charts):
                 y += _LEADING
             log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
-            canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], log.format)
+            canvas.explain(chart.gutter, texts.EXPLAIN_AXIS, log.format)
 
 
 def _written(form: str, value: float) -> str:
@@ -322,8 +297,6 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _change_words(change: SettingChange) -> str:
-    if change.name == EDITED:
-        return texts.EDIT_TICK.format(count=change.after) if change.after else texts.EDIT_TICK_BACK
     if change.name == REVERTED:
         return texts.TRAIN_REVERTED
     part = "." in change.name

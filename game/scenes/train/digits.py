@@ -21,14 +21,13 @@ from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import Pointer, TrainingScene
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
-from game.scenes.train.digit_views import ConfusionMatrix, FilterFilm
+from game.scenes.train.digit_views import ConfusionMatrix
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout, TrainingStatus
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
 from game.training.run_settings import RunSettings
-from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer
@@ -51,17 +50,14 @@ def fallen(history: History) -> tuple[float, float] | None:
 
 
 class DigitTrainingScene(TrainingScene):
-    """Digit training scene: charts, knobs, and the confusion matrix or the filters as they form.
+    """Digit training scene: charts, knobs, and the confusion matrix.
 
     Attributes:
-        film: the filters of the moment that is chosen on the charts.
         matrix: what is misread.
-        view: what is shown: the matrix, 0, or the filters, 1.
 
     """
 
     def __init__(self, context: Context) -> None:
-        self.view = 0
         super().__init__(context, TrainingRun(DIGITS, DigitModels(runs_dir(context.user_dir))))
 
     def _build(self) -> None:
@@ -71,14 +67,13 @@ class DigitTrainingScene(TrainingScene):
         change = partial(self.run.ask, "change")
         settings = RunSettings(DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
         self.knobs = KnobsPanel(self.form, settings)
-        self.film = FilterFilm(self.charts)
         self.matrix = ConfusionMatrix((0, 0, 100, 100))
 
     # Rows
 
     @property
     def _key(self) -> Hashable:
-        return self.view, self.run.stopping, self._fallen is not None, self._shows_misread
+        return self.run.stopping, self._fallen is not None, self._shows_misread
 
     @property
     def _status(self) -> TrainingStatus:
@@ -113,15 +108,12 @@ class DigitTrainingScene(TrainingScene):
     @property
     def _shows_misread(self) -> bool:
         """Whether something was read already, and there is room to read what."""
-        return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
+        return self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
     def _pointers(self) -> list[Pointer]:
         nowhere, charts = (0, 0, 1, 1), self.charts
         pointers: list[Pointer] = [(VirtualPointer(nowhere, charts.follow), lambda: charts.box)]
-        if self.view:
-            scrubber = Scrubber(charts, self.film.choose, lambda: None, charts.zoom_by)
-            pointers.append((scrubber, lambda: charts.box))
-        elif self._shows_misread:
+        if self._shows_misread:
             if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone
                 before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
                 self.matrix.set(before.confusion)
@@ -139,7 +131,6 @@ class DigitTrainingScene(TrainingScene):
 
     def _describe_more(self, column: Column) -> None:
         self.switch(column, ALL_KNOBS)
-        column.choice("", texts.DIGIT_RUN_VIEWS, self.view, self._change_view, SMALL)
         column.line()
         column.words([
             (texts.LESSON_WHY, self.lessons.ask),
@@ -160,11 +151,6 @@ class DigitTrainingScene(TrainingScene):
         column.button(texts.DIGIT_RUN_GO_BACK, partial(self.run.ask, "restore_best"))
         return True
 
-    def _change_view(self, view: int) -> None:
-        """Show what is misread, or the filters with a scrubber over the charts."""
-        self.film.release()
-        self.view = view
-
     # Time
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -178,11 +164,10 @@ class DigitTrainingScene(TrainingScene):
         self._listen()
         if self.matrix.confusion is not run.confusion:
             self.matrix.set(run.confusion)
-        self.film.follow(run)
         if run.alive and len(history):
             rate, before = float(history["learning_rate"][-1]), self.knobs.settings.in_force
-            if before is None or before.values["learning_rate"] != rate or before.idle != run.config.unused():
-                self.knobs.show_in_force(InForce({"learning_rate": rate}, run.config.unused()))
+            if before is None or before.values["learning_rate"] != rate:
+                self.knobs.show_in_force(InForce({"learning_rate": rate}))
         looked = self.charts.look(history, Beside(run.earlier))
         self.charts.update(at_once=self._settings.reduced_motion, turn=not looked)
         return self._finish_update() or self.lessons.update()
@@ -204,12 +189,10 @@ class DigitTrainingScene(TrainingScene):
     # The picture
 
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the figures, what is misread or the filters, and the charts."""
+        """Draw the figures, what is misread, and the charts."""
         self._sky.draw(canvas)
         self.draw_title(canvas)
-        if self.view:
-            self.film.draw(canvas, self._area)
-        elif self._shows_misread:
+        if self._shows_misread:
             self._draw_misread(canvas)
         self.charts.draw(canvas)
 

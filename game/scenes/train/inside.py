@@ -1,4 +1,4 @@
-"""Inside the network of a training run: the live network, what a player does to it, and what it is paid for."""
+"""Inside the network of a training run: the live network, and what it is paid for."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 import pygame
 
 from ai.agent.network import build_network
-from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
 from ai.training.history import PARTS
@@ -21,8 +20,6 @@ from game.explain.figures import points
 from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
 from game.explain.tables import Line, table
-from game.scenes.train.editing import NetworkEditing
-from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 
@@ -36,15 +33,12 @@ class Inside:
     Attributes:
         view: shows `network`, None without a run; `shown` is the message that it came with.
         paid: points that each part of the reward has paid per flight, (len(PARTS),).
-        health: diagnosis of the network's units and numbers.
-        editing: what a player does to the network by hand.
 
     """
 
-    def __init__(self, run: TrainingRun, rewind: Rewind, is_open: Callable[[], bool]) -> None:
+    def __init__(self, run: TrainingRun, is_open: Callable[[], bool]) -> None:
         self._run, self._is_open = run, is_open
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self.editing = NetworkEditing(self.view, run, rewind)
         self.clear()
 
     def clear(self) -> None:
@@ -53,8 +47,6 @@ class Inside:
         self.shown: NetworkState | None = None
         self._seen: NetworkState | None = None
         self.paid = np.zeros(len(PARTS))
-        self.health = NetworkHealth()
-        self.editing.clear()
 
     @property
     def opened(self) -> bool:
@@ -69,12 +61,6 @@ class Inside:
     def place(self, display: pygame.FRect) -> None:
         """Move to another box."""
         self.view.place((display.left + _MARGIN, display.top + 20, display.width - 2 * _MARGIN, display.height - 36))
-
-    def examine(self, state: NetworkState) -> None:
-        """Show the network that the run reports, and see how healthy it is."""
-        self.show(state)
-        if self.shown is state and self.network is not None:
-            self.health.look(self.network, state.observation, self._run.config.gradient_clip)
 
     def show(self, state: NetworkState | None, row: int = -1) -> None:
         """Show a network, perhaps of an earlier moment, and what was paid at that row of the history."""
@@ -95,8 +81,6 @@ class Inside:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self.view.hover(event.pos if self.opened else None)
-        if self.opened:
-            self.editing.follow(event)
 
     def update(self) -> None:
         """Advance by 1/60 s; the view follows while it is seen: to choose what it shows takes a millisecond."""
@@ -104,17 +88,14 @@ class Inside:
             self._seen = self.shown
             self.view.output_scale = self._run.config.reward_scale
             self.view.set(self.network, self.shown.observation)
-            self.editing.look(self.network)
-        self.editing.update()
         if self.opened:
             self.view.update()
 
     def describe(self, column: Column) -> None:
-        """Add what the lines show, and what can be done to the network."""
+        """Add what the lines show, and what a flight was paid for."""
         column.text(texts.NETWORK_VIEW_TITLE, size=TITLE)
         column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._choose, SMALL)
         column.aside(lambda: texts.NETWORK_VIEW_LINES[self.view.show])
-        self.editing.describe(column, opened=True)
         column.gap()
         column.caption(texts.REWARD_BAR_LABEL)
         if len(self._run.history):
@@ -130,9 +111,8 @@ class Inside:
         return [*lines, Line((texts.REWARD_SUM, points(float(self.paid.sum()), 1)), lit=True)]
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the network and the marks on it."""
+        """Draw the network."""
         self.view.draw(canvas)
-        self.editing.draw(canvas)
 
     def _choose(self, index: int) -> None:
         self.view.show = SHOWN[index]

@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 import pygame
 
-from ai.pilots.child import PAY
-from ai.pilots.shelf import Shelf
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import Experiment, differences
+from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
-from game.core.scene import Pop, Push, Transition, push
-from game.core.worker import WorkerState
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
-from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
-from game.scenes.train.charts import BY_DECISIONS, SCORE, Beside, ChartCaptions, TrainingCharts
+from game.scenes.train.charts import LANDINGS, SCORE, Beside, LandingsCaption, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.laboratory import Laboratory
@@ -43,8 +37,6 @@ from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.rows import RunRow
 from game.ui.virtual_pointer import VirtualPointer
-
-_BEHIND: Final = 0.72  # cover of the swarm behind an edited network
 
 
 class TrainScene(TrainingScene):
@@ -66,13 +58,13 @@ class TrainScene(TrainingScene):
 
     def _build(self) -> None:
         run = self.run
-        self.charts, self.captions = TrainingCharts(), ChartCaptions()
+        self.charts, self.caption = TrainingCharts(), LandingsCaption()
         settings = RunSettings(PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
         self.knobs = KnobsPanel(self.form, settings)
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
         self.rewind = Rewind(run)
         self.landers = Landers(run, self.rewind)
-        self.inside = Inside(run, self.rewind, partial(self.opened, INSIDE))
+        self.inside = Inside(run, partial(self.opened, INSIDE))
         self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
         self._frame = 0
@@ -84,8 +76,8 @@ class TrainScene(TrainingScene):
     def _key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
-        now, editing = self.rewind.moment is None, self.inside.editing.key
-        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened, editing
+        now = self.rewind.moment is None
+        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened
 
     @property
     def _status(self) -> TrainingStatus:
@@ -117,10 +109,10 @@ class TrainScene(TrainingScene):
     def _pointers(self) -> list[Pointer]:
         nowhere, charts = (0, 0, 1, 1), self.charts
         if self.inside.opened:
-            view = VirtualPointer(nowhere, self.inside.follow, hold=texts.EDIT_PICK)
+            view = VirtualPointer(nowhere, self.inside.follow)
             return [(view, lambda: self.inside.view.box)]
         landers = VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK)
-        scrubber = Scrubber(charts, self._scrub, self._duel, charts.zoom_by)
+        scrubber = Scrubber(charts, self._scrub, self._duel)
         return [
             (landers, lambda: self.landers.box),
             (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
@@ -141,7 +133,6 @@ class TrainScene(TrainingScene):
             column.button(texts.LESSON_WHY, self._ask_why)
             self.switch(column, INSIDE)
             return
-        self.inside.editing.describe(column, opened=False)
         if self.laboratory.page:
             self.laboratory.describe(column)
             return
@@ -153,21 +144,20 @@ class TrainScene(TrainingScene):
             self.switch(column, name)
         column.button(texts.TRAIN_EXPERIMENTS, self.laboratory.open).pad = 3.0
         column.button(texts.TRAIN_RUNS, self._open_runs).pad = 3.0
-        pay = self.run.pay.name if self.run.pay else ""
-        column.button(texts.PILOTS_WORDS["pay"][0], self._open_pays, figure=pay).pad = 3.0
         column.gap(8)
         column.line()
         column.words([
             (texts.LESSON_WHY, self._ask_why),
             (texts.TRAIN_DUEL, self._duel),
-            (texts.TRAIN_COMPARE, self._compare),
-            (texts.TRAIN_STEP, self.run.step),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
-        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace)
+
+    def _describe_foot(self, column: Column) -> None:
+        super()._describe_foot(column)
+        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
 
     def _describe_beside(self, column: Column) -> None:
-        """Add the names of the runs that are shown beside this one, and by what they are measured."""
+        """Add the names of the runs that are shown beside this one."""
         shown = self._beside
         if not shown.runs:
             return
@@ -177,7 +167,6 @@ class TrainScene(TrainingScene):
             column.widget(RunRow(name, style, press))
         if not self.run.twin:
             column.aside(texts.COMPARE_REMOVE)
-        column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)
 
     @property
     def _beside(self) -> Beside:
@@ -213,7 +202,7 @@ class TrainScene(TrainingScene):
         self._go_to_moment()
         if self._news and run.alive and not looked:  # in a frame of its own
             self._news, looked = False, True
-            self._advice.follow(self.inside.health)
+            self._advice.follow()
         looked |= self.charts.look(run.history, self._beside, self._caption)
         self.landers.update(still)
         self._frame += 1
@@ -231,7 +220,7 @@ class TrainScene(TrainingScene):
         if run.network_state is None or run.network_state is network_state:
             return False
         if self.rewind.moment is None:
-            self.inside.examine(run.network_state)
+            self.inside.show(run.network_state)
         self._news = run.alive and len(run.history) > 0
         return True
 
@@ -247,17 +236,13 @@ class TrainScene(TrainingScene):
         run = self.run
         if chart == SCORE and self._beside.paid_otherwise:
             return texts.LAB_PAID_OTHERWISE
-        return self.captions.read(chart, run.history, run.config, self._advice.hint) if run.alive else ""
+        hinted = bool(self._advice.hint)
+        return self.caption.read(run.history, run.config, hinted) if run.alive and chart == LANDINGS else ""
 
     # The run
 
-    def _start(self, config: Config, seed: int, resume: Path | None = None) -> None:
-        with suppress(OSError):
-            self.run.pays = tuple(Shelf(self.context.user_dir, PAY).files().values())
-        super()._start(config, seed, resume)
-
     def _clear(self) -> None:
-        for part in (self.landers, self.rewind, self._advice, self.charts, self.captions, self.inside):
+        for part in (self.landers, self.rewind, self._advice, self.charts, self.caption, self.inside):
             part.clear()
 
     @property
@@ -284,29 +269,12 @@ class TrainScene(TrainingScene):
         chosen = self.landers.shown.chosen
         self.lessons.ask(CAREFUL if chosen is None else chosen, self.rewind.moment)
 
-    def _open_pays(self) -> Transition:
-        def choose(path: Path | None) -> None:
-            self.run.pay, self._laid = path, None
-            self.context.note(texts.PILOTS_PAYS)
-
-        return push("pilots", choose, PAY, self.run.pay)
-
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:
             self._start(Config(), 0, folder)
             return Pop()
 
         return push("runs", train=go_on)
-
-    def _compare(self) -> Transition:
-        """Ask for a saved run whose curves shall be seen beside these."""
-        runs = self.library.runs()
-
-        def put(number: int) -> None:
-            if note := self.run.compare(runs[number].name, runs[number].folder):
-                self.context.note(note)
-
-        return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
 
     def _duel(self) -> Transition | None:
         """Fly against the checkpoint of the moment that is shown."""
@@ -323,10 +291,10 @@ class TrainScene(TrainingScene):
 
     # An experiment
 
-    def _split(self, experiment: Experiment) -> None:
-        """Fly an experiment beside a healthy twin; the run that goes on is put among the player's networks."""
+    def _split(self, sabotage: str) -> None:
+        """Fly a sabotage beside a healthy twin; the run that goes on is put among the player's networks."""
         config, seed = self.knobs.config, self.knobs.seed
-        changed = experiment.applied(config)
+        changed = sabotaged(config, sabotage)
         if self.run.twin is None and not self._keep():
             return
         self._was_running = False
@@ -335,7 +303,6 @@ class TrainScene(TrainingScene):
         self._clear()
         self.knobs.set_config(config, seed)
         self.laboratory.follow()
-        self.charts.measure_by(BY_DECISIONS)
         self.laboratory.open()
 
     def _leave_split(self, experiment: bool) -> None:
@@ -370,10 +337,7 @@ class TrainScene(TrainingScene):
         display, box = self._layout.display, self._layout.swarm
         split = self.run.twin is not None
         if self.inside.opened:
-            edited = self.run.edits.holds and self.rewind.moment is None  # then the swarm is seen behind the network
-            if edited:
-                self.landers.now.draw(canvas, alpha, paused=self.run.state is WorkerState.PAUSED)
-            canvas.fill(canvas.rect(*display), NIGHT0, _BEHIND if edited else 1.0)
+            canvas.fill(canvas.rect(*display), NIGHT0)
             self.inside.draw(canvas)
             return
         top = display.top if split else box.bottom  # one swarm fills its box

@@ -6,18 +6,16 @@ import math
 from functools import partial
 from typing import Final
 
-import numpy as np
 import pygame
 
 from ai.agent.decision import Decision
 from ai.lander.environment import OBSERVATION_SCALE
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL
-from game.explain.figures import points, what_is_sensed
+from game.explain.figures import what_is_sensed
 from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values
-from game.scenes.watch.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
+from game.scenes.watch.policy_map import COLOURS
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
 _COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
@@ -29,12 +27,10 @@ _PITCH: Final = 18
 _NAME, _FIGURE = 96, 52  # room for an input's name, and for its figure
 _SWATCH: Final = (5.0, 12.0)  # of an action's colour on the map
 _LEGEND: Final = pygame.Rect(PANEL.left, PANEL.bottom + 4, PANEL.width, 28)  # of the map
-_SCALE: Final = 24  # points more for the scale of scores
-_BARS: Final = PaintCache(1)
 
 
-def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | None = None) -> None:
-    """Draw the decision of one lander exactly as it was made, and what the colours of the sky mean."""
+def draw_decision(canvas: Canvas, decision: Decision, *, mapped: bool = False) -> None:
+    """Draw the decision of one lander exactly as it was made and, if `mapped`, what the colours of the sky mean."""
     canvas = canvas.at(1, -1)
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)
@@ -44,10 +40,8 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
         draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
-    if policy_map and policy_map.kind == ACTION:
+    if mapped:
         _draw_swatches(canvas, top + _VALUES, by_rules=values is None)
-    elif policy_map and policy_map.kind == SCORE:
-        _draw_scale(canvas, policy_map.scale)
     for number, line in enumerate(decision_words(decision)):
         canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
     if decision.points is not None:
@@ -59,40 +53,15 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
 
 
 def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
-    """Draw the colour of each action on the map before its name."""
-    _draw_meaning(canvas, ACTION, _LEGEND)
+    """Draw the colour of each action on the map before its name, and below the panel what the map is."""
+    canvas.panel(_LEGEND, _COVER)
+    place = (_LEGEND.left + _LEFT, _LEGEND.top + 18)
+    canvas.text(texts.MAP_COLOURS, place, size=SMALL, colour=MUTE, room=_LEGEND.width - 2 * _LEFT)
     for action, colour in enumerate(COLOURS):
         middle = top + ROW * action + (-4 if by_rules else FIRST)
         canvas.rounded((PANEL.left + _LEFT - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
     # As wide as the panel: what is said of it stands beside that, and not on the values.
-    canvas.explain((PANEL.left, top - 10, PANEL.width, HEIGHT - 20), texts.EXPLAIN_MAP[ACTION - 1])
-
-
-def _draw_meaning(canvas: Canvas, kind: int, box: pygame.Rect) -> None:
-    """Say below the panel what the colours of the sky are."""
-    canvas.panel(box, _COVER)
-    place = (box.left + _LEFT, box.top + 18)
-    canvas.text(texts.MAP_COLOURS[kind - 1], place, size=SMALL, colour=MUTE, room=box.width - 2 * _LEFT)
-
-
-def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
-    """Draw the scale of the map of scores below the panel."""
-    box = pygame.Rect(_LEGEND.topleft, (_LEGEND.width, _LEGEND.height + _SCALE))
-    left, top, width = box.left + _LEFT, box.top + 13, box.width - 2 * _LEFT
-    _draw_meaning(canvas, SCORE, box)
-    _BARS.draw(canvas, (left, top + 12, width, 6), "scores", _paint_scale)
-    for share, align in ((0.0, "left"), (0.5, "centre"), (1.0, "right")):
-        if scale is not None:
-            value = points(scale[0] + share * (scale[1] - scale[0]), 1).removesuffix(".0")
-            place = (left + share * width, top + 32)
-            canvas.text(value, place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
-    canvas.explain(box, texts.EXPLAIN_MAP[SCORE - 1])
-
-
-def _paint_scale(sheet: Canvas) -> None:
-    width, height = sheet.size
-    row = np.round(score_colours(np.linspace(0.0, 1.0, width))).astype(np.uint8)
-    sheet.surface.blit(pygame.surfarray.make_surface(np.repeat(row[:, None], height, axis=1)), (0, 0))
+    canvas.explain((PANEL.left, top - 10, PANEL.width, HEIGHT - 20), texts.EXPLAIN_MAP)
 
 
 def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, width: float) -> None:

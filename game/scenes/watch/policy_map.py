@@ -1,4 +1,4 @@
-"""Policy map: over the whole sky, what a network would do there, or what score it would expect from there on.
+"""Policy map: over the whole sky, what a network would do there.
 
 Like the heat map of TensorFlow Playground, for flying: a grid of places is put before the network that flies, with the
 tilt, turn and speed of the shown lander, and its decisions colour the sky.
@@ -7,10 +7,9 @@ tilt, turn and speed of the shown lander, and its decisions colour the sky.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final, TypeVar
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 import pygame
 
 from ai.agent.decision import Decision
@@ -22,28 +21,19 @@ from game.drawing.tokens import Colour
 from game.flight.networks import Policy, decide, work_of
 from game.world.camera import GROUND_LINE, View
 
-OFF, ACTION, SCORE = range(3)
 # Of the six actions, in their order: a hue says which jet fires, and a light one that the main engine burns as well.
 # Blue to yellow stays apart for eyes without the red or the green cones.
 COLOURS: Final[tuple[Colour, ...]] = (
     (60, 66, 84), (64, 60, 190), (150, 118, 24), (150, 166, 170), (150, 146, 255), (240, 206, 96),
 )  # fmt: skip
-# From the lowest to the highest score: even steps of lightness, from blue to yellow.
-_SCORES: Final = np.array(
-    [(26, 22, 92), (44, 72, 140), (44, 122, 140), (90, 168, 118), (196, 196, 90), (255, 226, 140)]
-)
 _COVER: Final = 0.5  # opacity of the map over the sky
 HALF: Final = LIMITS.half_width  # metres to either side
 TOP: Final = 20.0  # metres; above it stand words
 _FADE, _FADE_LOW = 2.5, 0.5  # metres over which it fades out at its top and sides, and at the ground
-_FINER: Final = 2  # by how much a map of actions is drawn finer than it was computed
+_FINER: Final = 2  # by how much it is drawn finer than it was computed
 _GRIDS: Final = ((65, 29), (33, 15), (17, 8))  # places across and up: the coarser, the larger the network
 _PIECE: Final = 4_700_000  # multiplications in one update: about a third of a millisecond
 _LONGEST: Final = 120  # updates that one whole map should take at most; a coarser grid is used where it would not
-_ENDS: Final = (0.10, 0.98)  # of all scores, those at the ends of the scale
-_STEP: Final = 10.0  # the ends of the scale are multiples of it, in points
-
-V = TypeVar("V", Floats, Doubles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,32 +49,24 @@ class PolicyCells:
     places: Doubles
     decision: Decision
 
-    @property
-    def scores(self) -> Floats | None:
-        """Expected score at each place in points, (rows, columns); None from a pilot without values."""
-        points = self.decision.points
-        return None if points is None else points.max(axis=1).reshape(self.places.shape[:2])
-
 
 class PolicyMap:
     """Policy map of the sky, computed in pieces; call `follow` once per update.
 
     Attributes:
-        kind: OFF, ACTION or SCORE.
+        on: whether it is shown.
         cells: the latest whole map; None before the first.
-        scale: lowest and highest score of the colours, in points; None before any.
 
     """
 
     def __init__(self) -> None:
-        self.kind = OFF
+        self.on = False
         self._picture = PaintCache()
         self.forget()
 
     def forget(self) -> None:
         """Forget all that was computed: another network flies."""
         self.cells: PolicyCells | None = None
-        self.scale: tuple[float, float] | None = None
         self._state: bytes = b""
         self._observations: Floats | None = None
         self._pieces: list[Decision] = []
@@ -94,7 +76,7 @@ class PolicyMap:
 
         How much is done in one update follows from the network's size alone.
         """
-        if self.kind == OFF:
+        if not self.on:
             return
         work = max(work_of(policy), 1)
         if self._observations is None:
@@ -109,13 +91,10 @@ class PolicyMap:
 
     def draw(self, canvas: Canvas, view: View) -> None:
         """Draw the map over the sky."""
-        if self.kind == OFF or self.cells is None:
+        if not self.on or self.cells is None:
             return
         (left, top), (right, bottom) = view.points(self.cells.places[[0, -1], [0, -1]]).tolist()
-        with canvas.unnoted():  # stars shine through it
-            shows = self.cells, self.kind, self.scale
-            box = (left, top, right - left, bottom - top)
-            self._picture.draw(canvas, box, shows, self._paint)
+        self._picture.draw(canvas, (left, top, right - left, bottom - top), self.cells, self._paint)
 
     def _begin(self, env: LanderEnv, slot: int, work: int) -> None:
         """Begin a new map, unless nothing has changed since the last."""
@@ -140,53 +119,40 @@ class PolicyMap:
             first.reward_scale,
         )
         self.cells, self._observations = PolicyCells(self._places, whole), None
-        scores = self.cells.scores
-        if scores is not None and np.isfinite(scores).any():
-            known = np.sort(scores[np.isfinite(scores)])
-            # As `np.percentile` does, whose first call loads a module for ten milliseconds in the middle of a flight.
-            low, high = np.interp(np.array(_ENDS) * (len(known) - 1), np.arange(len(known)), known)
-            before = self.scale or (low, high)
-            low, high = min(low, before[0]), max(high, before[1])  # a scale that shrank would change all colours
-            self.scale = float(_STEP * np.floor(low / _STEP)), float(_STEP * np.ceil(high / _STEP))
 
     def _paint(self, sheet: Canvas) -> None:
         """Paint the map on a sheet whose corners are the outermost places; at half resolution, since it is soft."""
         assert self.cells is not None
-        colours = self._colours(self.cells)
+        colours = _colours(self.cells)
         up, across = colours.shape[:2]
         x, y = np.linspace(-HALF, HALF, across), np.linspace(TOP, GROUND_LINE, up)
         fade = np.minimum((TOP - y) / _FADE, (y - GROUND_LINE) / _FADE_LOW).clip(0, 1)[:, None]
         fade = fade * ((HALF - np.abs(x)) / _FADE).clip(0, 1)
         small = pygame.surfarray.make_surface(np.round(colours).astype(np.uint8).swapaxes(0, 1))
-        if self.kind == ACTION:
-            small = pygame.transform.box_blur(small, 1)
+        small = pygame.transform.box_blur(small, 1)
         veil = pygame.Surface(small.get_size(), pygame.SRCALPHA)
         veil.blit(small, (0, 0))
         pygame.surfarray.pixels_alpha(veil)[:] = np.round(255 * _COVER * fade**2 * (3 - 2 * fade)).astype(np.uint8).T
         half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
         pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size, sheet.surface)
 
-    def _colours(self, cells: PolicyCells) -> Doubles:
-        """Return the colour of every place, (rows, columns, 3); of actions finer, with borders between them."""
-        shape, decision = cells.places.shape[:2], cells.decision
-        if self.kind == SCORE and (scores := cells.scores) is not None and self.scale is not None:
-            low, high = self.scale
-            return score_colours((np.nan_to_num(scores, nan=low) - low) / max(high - low, 1e-6))
-        weights = (
-            np.eye(len(COLOURS), dtype=np.float32)[decision.action] if decision.values is None else decision.values
-        )
-        fine = finer(finer(weights.reshape(*shape, -1)).swapaxes(0, 1)).swapaxes(0, 1)
-        colours: Doubles = np.array(COLOURS, float)[fine.argmax(axis=-1)]
-        return colours
+
+def _colours(cells: PolicyCells) -> Doubles:
+    """Return the colour of every place, (rows, columns, 3), finer, with borders between the actions."""
+    shape, decision = cells.places.shape[:2], cells.decision
+    weights = np.eye(len(COLOURS), dtype=np.float32)[decision.action] if decision.values is None else decision.values
+    fine = finer(finer(weights.reshape(*shape, -1)).swapaxes(0, 1)).swapaxes(0, 1)
+    colours: Doubles = np.array(COLOURS, float)[fine.argmax(axis=-1)]
+    return colours
 
 
-def finer(values: V) -> V:
+def finer(values: Floats) -> Floats:
     """Return values (n, ...) with `_FINER` - 1 more between each two neighbours, on a straight line between them."""
     count = (len(values) - 1) * _FINER + 1
     place = np.arange(count) / np.float32(_FINER)
     left = np.minimum(place.astype(int), len(values) - 2)
     share = (place - left).astype(np.float32).reshape(-1, *[1] * (values.ndim - 1))
-    between: V = values[left] + share * (values[left + 1] - values[left])
+    between: Floats = values[left] + share * (values[left + 1] - values[left])
     return between
 
 
@@ -194,9 +160,3 @@ def grid_places(across: int, up: int) -> Doubles:
     """Return a grid of places over the sky in metres, (up, across, 2), the highest first."""
     places = np.meshgrid(np.linspace(-HALF, HALF, across), np.linspace(TOP, GROUND_LINE, up))
     return np.stack(places, axis=-1)
-
-
-def score_colours(shares: npt.NDArray[Any]) -> Doubles:
-    """Return the colours (..., 3) of scores, from 0, the lowest on the scale, to 1, the highest."""
-    marks = np.linspace(0.0, 1.0, len(_SCORES))
-    return np.stack([np.interp(shares, marks, _SCORES[:, channel]) for channel in range(3)], axis=-1)

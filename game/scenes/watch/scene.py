@@ -26,9 +26,8 @@ from game.flight import networks, own
 from game.flight.swarm import Swarm
 from game.input.controls import Command
 from game.scenes.watch.decision_panel import PANEL, draw_decision
-from game.scenes.watch.policy_map import ACTION
 from game.scenes.watch.touch import Hand
-from game.scenes.watch.watched import SIZES, Watched
+from game.scenes.watch.watched import Watched
 from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
 from game.ui.form import FormScene, Part
@@ -36,7 +35,6 @@ from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.widget import OnPress, Widget
 
-COUNTS: Final = tuple(SIZES)
 _ROWS: Final = (452.0, 712.0)  # greatest width of the choices, for the pad begins there, and where they end
 _LABELS: Final = 60.0
 _BETWEEN: Final = 2.0  # points above and below each row
@@ -55,17 +53,16 @@ class WatchScene(FormScene):
 
     """
 
-    def __init__(self, context: Context, count: int = 1, seed: int | None = None) -> None:
+    def __init__(self, context: Context, seed: int | None = None, *, many: bool = False) -> None:
         super().__init__(context)
         self.form.anchor = (-1, 1)
-        self._count = COUNTS.index(count)
+        self._many = many
         self.world = Watched(context)
         self.playback = self.world.playback
         self.explained = Explained()
         self.problem = self._wanted = self._message = ""
         self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
         self._stood = False  # whether all stood still in the last update
-        self._valued = True  # whether who flies gives values
         self._version = 0  # of the player's own file that flies
         self._settings = context.settings
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
@@ -117,7 +114,6 @@ class WatchScene(FormScene):
     def actions(self) -> Table:
         """Stop and step; touch, and undo it; colour the sky; explain; show another lander; begin anew; pause."""
         world, playback, hand = self.world, self.playback, self.hand
-        many = COUNTS[self._count] > 1
         by_pad = self.context.controls.gamepad_in_use  # which undoes in the hand, and finds the maps in their row
         stop, step, *speeds = playback.actions(texts.HINT_DECISION)
         says = self._saying
@@ -128,7 +124,7 @@ class WatchScene(FormScene):
         def shown(direction: int) -> Run:
             return says(lambda: self._turn(direction), texts.HINT_NEXT_LANDER, lambda: str(world.shown + 1))
 
-        turn_map = says(self._turn_map, texts.HINT_MAP, lambda: texts.MAP_KINDS[world.policy_map.kind])
+        turn_map = says(self._turn_map, texts.HINT_MAP, lambda: texts.KNOB_SWITCH[world.policy_map.on])
         undo = Action(pygame.K_z, says(world.untouch, texts.HINT_UNTOUCH), "" if by_pad else texts.HINT_UNTOUCH)
         return [
             stop,
@@ -136,7 +132,7 @@ class WatchScene(FormScene):
             Action(Command.MODE, self._touch, texts.HINT_TOUCH),
             *([undo] if world.can_untouch else []),
             Action(pygame.K_m, turn_map, "" if by_pad else texts.HINT_MAP),
-            Action(Command.NEXT, shown(1), texts.HINT_NEXT_LANDER if many else ""),
+            Action(Command.NEXT, shown(1), texts.HINT_NEXT_LANDER if self._many else ""),
             Action(Command.RETRY, says(self._begin_anew, texts.HINT_RESTART), texts.HINT_RESTART),
             Action(pygame.K_o, self._open_pilots, "" if by_pad else texts.HINT_PILOTS),
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
@@ -185,7 +181,7 @@ class WatchScene(FormScene):
         above = self.hand.used(canvas.pointer)  # then it is drawn over the panel
         if not above:
             self.hand.draw(canvas)
-        draw_decision(canvas, self.decision, self.world.policy_map)
+        draw_decision(canvas, self.decision, mapped=self.world.policy_map.on)
         if above:
             self.hand.draw(canvas)
         self._draw_words(canvas)
@@ -196,24 +192,19 @@ class WatchScene(FormScene):
     def _begin(self) -> None:
         policy = self.network.policy
         assert policy is not None
-        if isinstance(policy, networks.QPolicy) is not self._valued:
-            self._valued = not self._valued
-            if not self._valued:
-                self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
-            self._describe(self._model_choice.index)
-        self.world.begin(COUNTS[self._count], self._seed, policy)
+        self.world.begin(self._many, self._seed, policy)
 
     def _begin_anew(self) -> None:
         self._seed = int(self.context.rng.integers(2**31))
         self._begin()
 
     def _turn(self, direction: int) -> None:
-        self.world.shown = (self.world.shown + direction) % COUNTS[self._count]
+        self.world.shown = (self.world.shown + direction) % self.swarm.env.num_envs
 
     def _pick(self, point: tuple[float, float]) -> bool:
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
         panel = PANEL.move(moved(self.context.view, 1, -1))
-        if COUNTS[self._count] == 1 or panel.collidepoint(point) or (slot := self.world.nearest(point)) is None:
+        if not self._many or panel.collidepoint(point) or (slot := self.world.nearest(point)) is None:
             return False
         self.world.shown = slot
         return True
@@ -249,7 +240,7 @@ class WatchScene(FormScene):
         return policies
 
     def _describe(self, chosen: int) -> None:
-        """Describe the rows anew: who flies, how many, how fast, and the map; one without values has none of scores."""
+        """Describe the rows anew: who flies, how many, how fast, and the map."""
         part, self._size = Part(self.form), (size := typeface.grown(SMALL))
         self._panel = panel = Panel(part)
         names = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
@@ -257,11 +248,10 @@ class WatchScene(FormScene):
             texts.WATCH_MODEL, names, chosen, self._choose_network, size,
             on_open=self._open_networks, all_word=texts.WATCH_ALL.format(count=len(names)),
         )  # fmt: skip
-        counts = [str(count) for count in COUNTS]
-        count = panel.choice(texts.WATCH_COUNT, counts, self._count, self._choose_count, size)
+        count = panel.choice(texts.WATCH_COUNT, texts.WATCH_MANY, self._many, self._choose_count, size)
         speed = self.playback.describe(panel, size)
-        kinds = texts.MAP_KINDS if self._valued else texts.MAP_KINDS[: ACTION + 1]
-        self._map_choice = panel.choice(texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map, size)
+        switch, shown = texts.KNOB_SWITCH, self.world.policy_map.on
+        self._map_choice = panel.choice(texts.WATCH_MAP, switch, shown, self._choose_map, size)
         choices = self._model_choice, count, speed, self._map_choice
         for row, choice, what in zip(panel.rows, choices, texts.EXPLAIN_CHOICES, strict=True):
             row.what = what
@@ -295,10 +285,9 @@ class WatchScene(FormScene):
         return push("runs", choose=self._take)
 
     def _open_pilots(self) -> Transition:
-        def choose(path: Path | None) -> None:
-            if path:
-                own.take(self.context, path)
-                self._take(path.name)
+        def choose(path: Path) -> None:
+            own.take(self.context, path)
+            self._take(path.name)
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 
@@ -339,20 +328,20 @@ class WatchScene(FormScene):
         self._begin()
 
     def _choose_count(self, index: int) -> None:
-        self._count = index
+        self._many = bool(index)
         self._begin()
 
     def _choose_map(self, index: int) -> None:
-        self.world.policy_map.kind = index
+        self.world.policy_map.on = bool(index)
         self.world.set_up_camera()
 
     def _turn_map(self) -> None:
-        self._map_choice.choose((self._map_choice.index + 1) % len(self._map_choice.options))
+        self._map_choice.choose(1 - self._map_choice.index)
 
     # The words
 
     def _draw_words(self, canvas: Canvas) -> None:
-        readouts.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=COUNTS[self._count]))
+        readouts.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=self.swarm.env.num_envs))
         left = canvas.at(-1, -1)
         left.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
         readouts.draw_hand(canvas, self._said, NET)

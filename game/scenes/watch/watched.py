@@ -18,7 +18,7 @@ from game.drawing.tokens import INK
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
 from game.scenes.watch.decision_panel import PANEL
-from game.scenes.watch.policy_map import OFF, PolicyMap
+from game.scenes.watch.policy_map import PolicyMap
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
@@ -31,10 +31,10 @@ from game.world.scenery import mark_lost
 from game.world.stage import Stage
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
-SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
+MANY: Final = 64  # landers, if there is more than one
+_SMALL: Final = 0.46  # size of each of many, to be seen through
 _CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
 _WHOLE_SKY: Final = CameraTarget.around(-17.0, 17.0, 17.0, ClearArea(right=PANEL.left))  # beside the panel, for a map
-_CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
@@ -58,13 +58,14 @@ class Watched:
         self.playback = Playback(self._clock, SPEEDS, self.fly_to_the_next_decision)
         self.shown, self._time = 0, 0.0
 
-    def begin(self, count: int, seed: int, policy: Policy) -> None:
-        """Begin anew with so many landers."""
+    def begin(self, many: bool, seed: int, policy: Policy) -> None:
+        """Begin anew with one lander, or many."""
+        count = MANY if many else 1
         self.swarm = Swarm(count, seed, policy)
         self.stage = Stage(self.swarm.env, np.random.default_rng(seed))
         self.stage.blue[:] = 1.0
         self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
-        self.trails = Trails(count, keep=12 if count < _CROWD else 5)
+        self.trails = Trails(count, keep=5 if many else 12)  # of many, more would only add to the tangle
         self.shown = min(self.shown, count - 1)
         self._before: dict[str, Any] | None = None
         self.policy_map.forget()
@@ -82,21 +83,26 @@ class Watched:
         return self.swarm.decision.of(self.shown)
 
     @property
+    def many(self) -> bool:
+        """Whether more than one flies."""
+        return self.env.num_envs > 1
+
+    @property
     def size(self) -> float:
         """Size at which the shown lander is drawn; 1 is true to scale."""
-        return min(1.0, 1.5 * SIZES[self.env.num_envs])
+        return 1.5 * _SMALL if self.many else 1.0
 
     def set_up_camera(self) -> None:
         """Let the camera follow a single lander; with several, a map or reduced motion it rests."""
         self.camera, self.stage.calm = Camera(), self._context.settings.reduced_motion
-        if self.policy_map.kind != OFF:
+        if self.policy_map.on:
             self.camera.cut(_WHOLE_SKY)
         elif self._follows:
             self.camera.cut(framing.framed(self.env, clear=_CLEAR))
 
     @property
     def _follows(self) -> bool:
-        return self.env.num_envs == 1 and not self.stage.calm and self.policy_map.kind == OFF
+        return not (self.many or self.stage.calm or self.policy_map.on)
 
     # Steps
 
@@ -195,7 +201,7 @@ class Watched:
     def draw(self, canvas: Canvas, between: float) -> None:
         """Draw the world, the map and the swarm."""
         calm = self._context.settings.reduced_motion
-        view, size = self.camera.view(canvas.scale, between).filling(canvas), SIZES[self.env.num_envs]
+        view, size = self.camera.view(canvas.scale, between).filling(canvas), _SMALL if self.many else 1.0
         landscape(canvas.surface.get_size(), calm, "moon").draw(canvas, self.camera, self._time, between)
         self.policy_map.draw(canvas, view)
         env, poses = self.env, self.swarm.poses.at(between)
@@ -218,6 +224,6 @@ class Watched:
             mark_lost(canvas, view, pose)
             return
         self.stage.draw_lander(canvas, view, pose, self.shown, self.size)
-        if self.env.num_envs > 1 and not self.playback.stopped:
+        if self.many and not self.playback.stopped:
             x, y = view.points(pose[:2]).tolist()
             canvas.marker("triangle_down", (x, y - 46 * self.size - 10), 9, INK)

@@ -58,6 +58,18 @@ def test_train_evaluate_resume(tmp_path, capsys):
     assert "success" in capsys.readouterr().out
 
 
+def test_a_run_is_paid_by_a_file_of_ones_own(tmp_path, capsys):
+    pay, run = tmp_path / "pay.py", tmp_path / "run"
+    pay.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
+    command = ["train", "--decisions", "400", "--validation", "4", *SMALL, "--pay", str(pay)]
+    assert main([*command, "--output", str(run)]) == 0
+    pay.write_text("def pay(before, action, after):\n    return 1 / 0")
+    assert main([*command, "--output", str(tmp_path / "another")]) == 1
+    assert "line 2: ZeroDivisionError" in capsys.readouterr().err
+    assert main([*command, "--output", str(tmp_path / "another"), "--env", "CartPole-v1"]) == 1
+    assert "--pay is for landers" in capsys.readouterr().err
+
+
 def test_what_cannot_be_done_is_said_in_a_line(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for arguments, message in [

@@ -95,11 +95,11 @@ def test_a_file_says_its_format_and_a_version_that_can_be_read():
     for values, said in (
         ([], "does not say that this is a 'cart'"),
         ({"format": "car", "version": 1}, "'cart'"),
-        ({"format": "cart"}, "format version null; this program reads version 1 and 2"),
+        ({"format": "cart"}, "format version null; this program reads version 2"),
         ({"format": "cart", "version": True}, "version true"),
         ({"format": "cart", "version": "x" * 1000}, "version 'xxx"),
     ):
         with pytest.raises(ValueError, match=said) as caught:
-            check_header(values, "cart", (1, 2))
+            check_header(values, "cart", 2)
         assert len(str(caught.value)) < 100
-    assert check_header({"format": "cart", "version": 2}, "cart", (1, 2))["version"] == 2
+    assert check_header({"format": "cart", "version": 2}, "cart", 2)["version"] == 2

@@ -2,7 +2,6 @@
 
 import os
 import time
-from itertools import count
 from pathlib import Path
 from typing import ClassVar
 
@@ -13,10 +12,6 @@ from ai.lander.environment import LanderEnv
 from ai.pilots import own
 from ai.pilots.own import MeasuredPilot, OwnPilot, pay_by
 from ai.pilots.process import PilotError
-from ai.training.config import Config
-from ai.training.history import Point
-from ai.training.lander_session import LanderSession
-from ai.training.messages import RunStarted
 
 OBSERVATION = np.zeros((1, 9), np.float32)
 HELD = np.array([5])
@@ -251,26 +246,3 @@ def test_landers_are_paid_by_a_file(tmp_path: Path):
     close()
     with pytest.raises(PilotError, match="ended"):
         env.step([0, 0, 0])
-
-
-def test_a_run_that_goes_on_is_paid_as_before_or_says_that_it_is_not(tmp_path: Path) -> None:
-    path, folder = tmp_path / "pay.py", tmp_path / "run"
-    path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
-    config = Config(num_envs=32, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1, spawn="near")
-
-    def go_on(decisions: int, **options: object) -> tuple[str, float]:
-        """What is said at the beginning, and the mean pay of a flight after some decisions."""
-        turns = LanderSession.live(config, 1, keep=folder, clock=count().__next__, **options)
-        (said,) = (each.lost for each in next(turns) if isinstance(each, RunStarted))
-        while True:
-            points = [each for each in next(turns) if isinstance(each, Point)]
-            if points and points[-1].decisions >= decisions:
-                turns.close()
-                return said, points[-1].mean_return
-
-    assert go_on(2_500, pay=path)[1] > 200, "each of some hundred steps pays 3"
-    said, paid = go_on(4_000, resume=folder, pays=(tmp_path / "another.py", path))
-    assert (said, paid > 200) == ("", True)
-    said, paid = go_on(12_000, resume=folder)
-    assert "pay.py" in said
-    assert paid < 0

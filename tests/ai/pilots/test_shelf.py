@@ -9,24 +9,23 @@ import pytest
 
 from ai.files import writing
 from ai.pilots import shelf
-from ai.pilots.child import ACT, PAY, load
+from ai.pilots.child import ACT, load
 from ai.pilots.own import MeasuredPilot
-from ai.pilots.shelf import TEMPLATES, Measured, Shelf
+from ai.pilots.shelf import TEMPLATE, Measured, Shelf
 from ai.training.tasks import evaluate
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def test_new_files_lie_beside_each_other_and_are_never_overwritten(tmp_path: Path):
-    for kind, names in ((ACT, ["pilot", "pilot 2"]), (PAY, ["pay", "pay 2"])):
-        files = Shelf(tmp_path, kind)
-        assert files.files() == {}
-        first = files.new()
-        first.write_text("mine")
-        files.new()
-        assert list(files.files()) == names
-        assert first.read_text() == "mine"
-        load(kind, "pilot.py", files.files()[names[1]].read_text())
+    files = Shelf(tmp_path)
+    assert files.files() == {}
+    first = files.new()
+    first.write_text("mine")
+    files.new()
+    assert list(files.files()) == ["pilot", "pilot 2"]
+    assert first.read_text() == "mine"
+    load(ACT, "pilot.py", files.files()["pilot 2"].read_text())
 
 
 def test_a_full_disk_leaves_no_half_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -43,7 +42,7 @@ def test_a_full_disk_leaves_no_half_of_a_file(tmp_path: Path, monkeypatch: pytes
 def test_measurements_are_kept_in_their_order_and_are_stale_once_the_file_was_saved_again(tmp_path: Path):
     files = Shelf(tmp_path)
     assert files.measured() == []
-    results = [Measured("pilot", 0.25, 7.5, 3.0, 1e9, (1, 2, 3, 4, 5, 6, 7)), Measured("pilot", 0.9, 8.0, 2.5, 1e9 + 1)]
+    results = [Measured("pilot", 0.25, 7.5, 3.0, 1e9), Measured("pilot", 0.9, 8.0, 2.5, 1e9 + 1)]
     files.keep(results[0])
     with (tmp_path / "pilots" / "measured.jsonl").open("a") as file:
         file.write('{"name": 3}\nnonsense\n{"name": "x", "landed": 7}\n')
@@ -80,8 +79,8 @@ def test_an_editor_is_opened_on_the_file_and_none_is_reported(tmp_path: Path, mo
 
 def test_the_template_nearly_lands_and_the_example_does(tmp_path: Path):
     for path, aim, least, most in (
-        (TEMPLATES / "pilot.py", "0.0", 0.05, 0.5),
-        (TEMPLATES / "pilot.py", "-0.3 * offset(observation)", 0.8, 1.0),  # what it asks for
+        (TEMPLATE, "0.0", 0.05, 0.5),
+        (TEMPLATE, "-0.3 * offset(observation)", 0.8, 1.0),  # what it asks for
         (EXAMPLES / "pilot_by_hand.py", "0.0", 0.9, 1.0),
     ):
         (tmp_path / "pilot.py").write_text(path.read_text().replace("aim = 0.0", f"aim = {aim}"))

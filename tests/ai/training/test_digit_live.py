@@ -6,7 +6,6 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
-from ai.digits.filters import FilterMoment, first_filters
 from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining, confusion
 from ai.digits.validation import EXAMPLES, Confusion
@@ -156,17 +155,6 @@ def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
 
 
-def test_the_filters_of_the_run_are_reported_from_its_first_moment_on(data):
-    for filters in ((3,), ()):  # without images held out, nothing is said of what it misreads
-        config = SMALL.changed(convolutions=True, filters=filters) if filters else SMALL.changed(held_out=0)
-        messages = [each for turn in DigitSession.live(config, 4, data=data) for each in turn]
-        assert bool(kinds(messages, Confusion)) == bool(filters)
-        moments, plain = kinds(messages, FilterMoment), DigitTraining(config, 4, data)
-        assert (moments[0].step, moments[0].seconds) == (0, 0.0)
-        for moment in moments:
-            while plain.step < moment.step:
-                plain.advance()
-            ours = first_filters(plain.classifier.network)
-            assert moment.images.shape == ours.shape == ((3, 5, 5) if filters else (16, 28, 28))
-            np.testing.assert_array_equal(moment.images, ours.astype(np.float16))
-        assert len(moments) < 30
+def test_without_images_held_out_nothing_is_said_of_what_it_misreads(data):
+    messages = [each for turn in DigitSession.live(SMALL.changed(held_out=0), 4, data=data) for each in turn]
+    assert not kinds(messages, Confusion)

@@ -111,35 +111,16 @@ def test_much_that_must_not_be_lost_is_kept_and_handed_over_in_parts():
     assert ticks(first + waiting.take()) == list(range(3 * MOST_WAITING))
 
 
-def test_a_paused_worker_stands_still_and_steps_one_turn_at_a_time(start):
+def test_a_paused_worker_stands_still_until_it_goes_on(start):
     counter = start(chores.counting)
     polled(counter, lambda messages: len(messages) > 3)
-    counter.step()  # not while it runs
     counter.pause()
     assert counter.state.name == "PAUSED"
     caught_up(counter)
-    counter.step()
-    (last,) = ticks(polled(counter, ticks))
-    assert ticks(caught_up(counter)) == []
-    for _ in range(3):
-        counter.step()
-    stepped = polled(counter, lambda messages: len(ticks(messages)) >= 3)
-    assert ticks(stepped) == [last + 1, last + 2, last + 3]
     assert ticks(caught_up(counter)) == []
     counter.resume()
     assert counter.state is WorkerState.RUNNING
     assert len(ticks(polled(counter, lambda messages: len(ticks(messages)) > 5))) > 5
-
-
-def test_steps_that_were_not_taken_are_forgotten_when_it_goes_on(start):
-    counter = start(chores.counting)
-    counter.pause()
-    caught_up(counter)
-    counter.step()
-    counter.resume()
-    counter.pause()
-    caught_up(counter)
-    assert ticks(caught_up(counter)) == []
 
 
 def test_it_turns_at_the_pace_that_is_set(start):

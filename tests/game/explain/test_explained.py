@@ -57,7 +57,7 @@ def test_everything_in_watch_is_explained(watching: Driver):
     for what in (
         texts.EXPLAIN_WATCH, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE,
         *(texts.EXPLAIN_READOUTS[name] for name in PILOT),
-        *texts.EXPLAIN_CHOICES, texts.EXPLAIN_MAP[0],
+        *texts.EXPLAIN_CHOICES, texts.EXPLAIN_MAP,
     ):  # fmt: skip
         assert what in named
     assert all(area.now() == area.now() for area in watching.app.canvas.explained)

@@ -68,10 +68,10 @@ def check(panel: Panel, points: np.ndarray, flown: int) -> None:
 def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
     open_game: Open, context: Context, agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch
 ):
-    count = 16 if agent.config.steadiness else 1
+    count = 64 if agent.config.steadiness else 1
     context.models_dir = MODELS.parent
     context.settings.reduced_motion = True
-    driver = open_game(WatchScene, count, seed=4)
+    driver = open_game(WatchScene, seed=4, many=count > 1)
     watch = driver.top
     assert isinstance(watch, WatchScene)
     watch.swarm.policy = Witness(agent)

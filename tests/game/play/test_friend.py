@@ -72,7 +72,9 @@ def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, reco
         assert isinstance(driver.top, scene)
 
 
-def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, clipboard: list[str]):
+def test_what_is_no_flight_is_refused_in_a_sentence(
+    open_game: Open, tmp_path, clipboard: list[str], monkeypatch: pytest.MonkeyPatch
+):
     driver = open_game()
     path = tmp_path / "strange.bin"
     refused = texts.CODE_REFUSED
@@ -86,6 +88,15 @@ def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, c
         assert driver.top_name == "MenuScene"
         assert driver.said.startswith("strange.bin: ")
         assert why in driver.said
+
+    def nonsense() -> str:
+        return b"\xff\xfe".decode()
+
+    monkeypatch.setattr(pygame.scrap, "get_text", nonsense)
+    driver.frames(2)
+    driver.key(pygame.K_v, pygame.KMOD_LCTRL)
+    assert (driver.top_name, driver.said) == ("MenuScene", texts.CODE_PASTE_EMPTY)
+    monkeypatch.setattr(pygame.scrap, "get_text", lambda: clipboard[-1])
     paste(driver, "tranq3-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=refused["cut"])
 

@@ -12,10 +12,8 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
-from ai.digits.filters import FilterMoment
 from ai.digits.validation import Confusion
 from ai.files import state_folder
-from ai.training.history import DigitPoint, Validation
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
@@ -24,11 +22,9 @@ from game.training.digit_models import DigitModels
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
 from game.training.run_settings import knob_descriptions
-from game.ui.charts import Scrubber
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import DIGITS as SMALL
-from tests.support.written import words_written
 
 
 @pytest.fixture
@@ -48,7 +44,7 @@ def confusion() -> Confusion:
 
 
 def test_every_setting_has_a_knob_and_a_word():
-    turned = knob_descriptions(DigitConfig)
+    turned, groups = knob_descriptions(DigitConfig), {each.name: each.metadata["group"] for each in fields(DigitConfig)}
     assert {dial.field for dial in turned} == {item.name for item in fields(DigitConfig)} <= set(texts.KNOBS)
     for dial in turned:
         assert len(dial.stops) > 1
@@ -57,7 +53,7 @@ def test_every_setting_has_a_knob_and_a_word():
             preset = "classic" if dial.field == "batch_size" else "modern"
             config = dial.write(DIGIT_PRESETS[preset], stop)
             assert dial.read(config) == stop
-            if dial.page == "network":
+            if groups[dial.field] == "network":
                 network = build_digit_network(config, np.random.default_rng(0))
                 assert network.predict(DigitClassifier(network).shaped(np.zeros((1, 28, 28)))).shape == (1, 10)
 
@@ -191,64 +187,3 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     assert scene.form.focused is scene.matrix
     train.keys(*[pygame.K_RIGHT] * 10)
     assert scene.form.focused is not scene.matrix, "beyond the edge the focus goes on"
-
-
-# Filters as they form
-
-
-def run_with_moments(driver: Driver) -> None:
-    """Give the run a few seconds with filters that can be distinguished."""
-    run = driver.top.run
-    for second in range(1, 10):
-        images = np.full((5, 4, 4), 0.01 * second, np.float16)
-        run.filters.append(FilterMoment(float(second), 10 * second, images))
-        run.history.append(Validation(10 * second, second / 10, second / 10, best=True, seconds=float(second)))
-        run.history.append(DigitPoint(float(second), 10 * second, 0.1, 1.0, 0.5, 0.001, 100.0))
-    driver.frames(30)
-
-
-def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, monkeypatch):
-    scene, words = beside.top, words_written(monkeypatch)
-    beside.form.focus(beside.choice(texts.DIGIT_RUN_VIEWS[1]))
-    beside.key(pygame.K_RIGHT)
-    beside.frames(2)
-    assert texts.DIGIT_RUN_FILTERS_NONE in " ".join(words)
-    run_with_moments(beside)
-    film = scene.film
-    assert film.moment.step == 90
-    scrubber = beside.the(Scrubber)
-    chart = scene.charts.charts[0]
-    beside.click((chart.place(3.2, 0.5)[0], chart.plot.centery))
-    assert film.moment.step == 30
-    beside.form.focus(scrubber)
-    beside.keys(pygame.K_RIGHT, pygame.K_LEFT)
-    assert film.moment.step == 30
-    words.clear()
-    beside.frames(2)
-    said = " ".join(words)
-    assert texts.DIGIT_RUN_FILTERS_AT.format(seconds="3.0", steps=30) in said
-    assert "30 %" in said
-    beside.form.focus(scrubber)
-    beside.keys(*[pygame.K_RIGHT] * 8)
-    assert film.at is None, "at the end it follows the run again"
-    scene.run.filters.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
-    assert film.moment.step == 100
-    scene.run.confusion = confusion()
-    beside.choice(texts.DIGIT_RUN_VIEWS[0]).choose(0)
-    beside.frames(3)
-    assert scene.matrix in beside.form.widgets
-    assert scrubber not in beside.form.widgets
-
-
-def test_a_live_run_shows_its_filters_and_the_next_run_its_own(train: Driver):
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: len(train.top.run.filters) > 1)
-    train.choice(texts.DIGIT_RUN_VIEWS[1]).choose(1)
-    train.frames(3)
-    first = train.top.film.moment
-    assert first.images.shape == (8, 28, 28)
-    train.top.film.choose(-1)
-    train.top.film.choose(0.0)
-    assert train.top.film.moment is train.top.run.filters[0]
-    train.top.film.follow(TrainingRun(DIGITS, train.top.run.collection))
-    assert train.top.film.moment is None

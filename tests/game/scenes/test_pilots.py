@@ -3,7 +3,6 @@
 import errno
 import os
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -44,18 +43,18 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
     watching.key(pygame.K_SPACE)
     watching.key(pygame.K_o)
     assert isinstance(watching.top, PilotsScene)
-    watching.press_on(texts.PILOTS_WORDS["act"][2])
+    watching.press_on(texts.PILOTS_NEW)
     [path] = edited
     assert path == context.user_dir / "pilots" / "pilot.py"
     path.write_text(GOOD)
-    watching.press_on(texts.PILOTS_WORDS["act"][3])
+    watching.press_on(texts.PILOTS_FLY)
     watch = scene(watching)
     assert not watch.playback.stopped, "what was stopped goes on"
     watching.wait(lambda: watch.network.name == "pilot.py")
     pilot = watch.network.policy
     assert isinstance(pilot, OwnPilot)
     pilot._patience = 60.0
-    assert watch.decision.action[0] == 4
+    watching.wait(lambda: watch.decision.action[0] == 4)
     assert texts.WATCH_OWN.format(name="pilot.py") == watch._said
     assert context.settings.model != "pilot.py"  # the next game asks again
     path.write_text("def act(o):\n    return 1 / 0 if o[1] < 99 else 0")
@@ -75,7 +74,7 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
 def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Driver, context: Context):
     shelf.Shelf(context.user_dir).new().write_text("def act(:")
     watching.key(pygame.K_o)
-    watching.press_on(texts.PILOTS_WORDS["act"][3])
+    watching.press_on(texts.PILOTS_FLY)
     watch = scene(watching)
     watching.wait(lambda: "SyntaxError" in watch._problem())
     assert watch.network.name == "scripted"
@@ -99,7 +98,7 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
 
     monkeypatch.setattr(*((pilots, "edit") if fails == "editor" else (shelf, "write_text")), refuse)
     watching.key(pygame.K_o)
-    watching.press_on(texts.PILOTS_WORDS["act"][2])
+    watching.press_on(texts.PILOTS_NEW)
     folder = context.user_dir / "pilots"
     message = watching.top._said
     if fails == "editor":
@@ -109,7 +108,7 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
         assert not watching.top._files
 
 
-def test_it_is_measured_beside_the_others_and_kept(
+def test_it_is_measured_and_that_is_said_in_one_line_until_the_file_is_saved_again(
     watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str]
 ):
     monkeypatch.setattr(own, "STARTS", 10)
@@ -117,53 +116,37 @@ def test_it_is_measured_beside_the_others_and_kept(
     path = shelf.Shelf(context.user_dir).new()
     watching.key(pygame.K_o)
     written.clear()
-    for _ in range(2):
-        watching.press_on(texts.PILOTS_MEASURE)
-        watching.wait(lambda: watching.top._worker is None)
-    assert texts.PILOTS_MEASURING[2].format(count=10) in written
-    measured = shelf.Shelf(context.user_dir).measured()
-    assert [each.name for each in measured] == ["pilot", "/scripted", "pilot"]  # the rival once
-    assert measured[0].landed == measured[2].landed <= 0.8 < own.rivals(measured)["scripted"].landed
-    assert [each.name for each in own.own(measured)] == ["pilot", "pilot"]
-    watching.press_on("pilot")
-    watching.key(pygame.K_RETURN)
-    assert watching.top_name == "WatchScene", "a press on its name leads to what can be done with it"
-    watching.key(pygame.K_o)
-    assert own.GOOD == 0.9
-    for landed, praised in ((0.89, False), (0.9, True), (1.0, True)):
-        shelf.Shelf(context.user_dir).keep(replace(measured[2], landed=landed))
-        watching.top.enter()
-        written.clear()
-        watching.frames(1)
-        assert (texts.PILOTS_GOOD in " ".join(written)) is praised
-    shelf.Shelf(context.user_dir).keep(measured[2])
-    watching.top.enter()
-    lost = {texts.PILOTS_LOST[number].format(count=count) for number, count in enumerate(measured[2].lost) if count}
-    assert sum(measured[2].lost) == round(10 * (1 - measured[2].landed))
+    watching.press_on(texts.PILOTS_MEASURE)
+    watching.wait(lambda: watching.top._worker is None)
+    assert texts.PILOTS_MEASURING[1].format(count=10) in written
+    (measured,) = shelf.Shelf(context.user_dir).measured()
+    assert (measured.name, measured.landed <= 0.8) == ("pilot", True)
+    os.utime(path, (measured.when - 9, measured.when - 9))
     written.clear()
     watching.frames(1)
     said = " ".join(written)
-    assert lost
-    assert all(words in said for words in lost)
+    landed, seconds = f"{100 * measured.landed:.1f}", f"{measured.seconds:.1f} s"
+    assert landed in said
+    assert seconds in said
     assert texts.PILOTS_STALE not in said
-    path.write_text(GOOD)
-    os.utime(path, (measured[2].when + 9, measured[2].when + 9))
+    os.utime(path, (measured.when + 9, measured.when + 9))
+    written.clear()
     watching.frames(1)
     assert texts.PILOTS_STALE in " ".join(written)
+    watching.press_on("pilot")
+    watching.key(pygame.K_RETURN)
+    assert watching.top_name == "WatchScene", "a press on its name leads to what can be done with it"
 
 
-def test_flights_that_leave_the_area_are_said_to_have_been_lost_outside(context: Context, monkeypatch):
+def test_a_measurement_says_how_far_it_is_and_keeps_what_came(context: Context, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(own, "STARTS", 4)
-    monkeypatch.setattr(own, "RIVALS", ())
     path = shelf.Shelf(context.user_dir).new()
     path.write_text("def act_many(o): return [3] * len(o)")
-    messages = [each for turn in own.measure(context.user_dir, context.models_dir, path) for each in turn]
-    *shares, measured = messages
+    shares = [each for turn in own.measure(context.user_dir, path) for each in turn]
     assert shares[-1] == 1.0
     assert shares == sorted(shares)
     assert 0 < shares[0] < 0.1
-    assert measured.landed == 0
-    assert measured.lost[5] > measured.lost[6] == 0
+    assert [each.landed for each in shelf.Shelf(context.user_dir).measured()] == [0]
 
 
 def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, context: Context):
@@ -207,7 +190,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     driver = open_game(PlayScene, 3)
     driver.keys(pygame.K_ESCAPE)
     driver.press_on(texts.PILOTS_OPEN)
-    driver.press_on(texts.PILOTS_WORDS["act"][3])
+    driver.press_on(texts.PILOTS_FLY)
     driver.keys(pygame.K_ESCAPE)
     play = driver.top
     assert isinstance(play, PlayScene)

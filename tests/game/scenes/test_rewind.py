@@ -126,22 +126,8 @@ def test_left_and_right_step_through_the_run_and_back_leads_to_now(train: Driver
     assert scene.charts.charts[0].marker is None
 
 
-def test_the_charts_are_zoomed_and_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
+def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
     scene = train.top
-    zoom = scene.charts.zoom
-    train.move(halfway(train))
-    train.post(pygame.MOUSEWHEEL, x=0, y=2)
-    assert zoom.factor > 1
-    train.frames(30)
-    for chart in scene.charts.charts:
-        assert chart.x_range[1] - chart.x_range[0] < zoom.end
-    train.form.focus(train.the(Scrubber))
-    train.key(pygame.K_0)
-    assert zoom.factor == 1
-    train.key(pygame.K_PLUS)
-    assert zoom.factor > 1
-    train.key(pygame.K_MINUS)
-    assert zoom.factor == 1
     train.press_on(texts.TRAIN_LOOK[0])
     train.frames(1)
     left, right = timeline(train)._track

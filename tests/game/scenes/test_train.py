@@ -48,9 +48,6 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     time.sleep(0.15)
     beside.frames(5)
     assert scene.run.swarm_state.decisions == stood
-    beside.key(pygame.K_PERIOD)
-    beside.wait(lambda: scene.run.swarm_state.decisions > stood)
-    assert scene.run.swarm_state.decisions == stood + 4
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.swarm_state.decisions > stood + 8)
 

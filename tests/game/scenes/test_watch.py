@@ -68,7 +68,7 @@ def test_another_number_of_landers_while_stopped_shows_what_they_will_fly(watchi
     watching.keys(pygame.K_SPACE, pygame.K_DOWN, pygame.K_RIGHT)
     watch = scene(watching)
     assert watch.playback.stopped
-    assert watch.swarm.env.num_envs == 16
+    assert watch.swarm.env.num_envs == 64
     assert steps(watching) == 0
     shown = watch.decision
     assert np.array_equal(shown.observation[0], watch.swarm.env.observe()[0])
@@ -85,9 +85,9 @@ def test_slower_and_faster(watching: Driver):
 
 
 def test_the_mouse_chooses_words_and_landers(watching: Driver):
-    choice = watching.choice("16")
+    choice = watching.choice(texts.WATCH_MANY[1])
     watching.click(choice._places[1].center)
-    assert scene(watching).swarm.env.num_envs == 16
+    assert scene(watching).swarm.env.num_envs == 64
     scene(watching).playback.stopped = True
     positions = scene(watching).swarm.env.position
     apart = [np.sort(np.hypot(*(positions - place).T))[1] for place in positions]
@@ -95,7 +95,7 @@ def test_the_mouse_chooses_words_and_landers(watching: Driver):
     watching.click(tuple(Camera().view(1.0).points(positions[free[0]])))
     assert scene(watching).world.shown == free[0]
     watching.keys(pygame.K_n)
-    assert scene(watching).world.shown == (free[0] + 1) % 16
+    assert scene(watching).world.shown == (free[0] + 1) % 64
 
 
 def test_restart_flies_new_starts(watching: Driver):

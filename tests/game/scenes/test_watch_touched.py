@@ -225,13 +225,13 @@ def test_a_touched_flight_is_not_counted_and_says_so(open_game: Open, context: C
 
 
 def test_a_wreck_flies_again_and_only_the_shown_one_of_a_swarm_is_touched(open_game: Open, context: Context):
-    driver = open_game(WatchScene, 16, seed=2)
+    driver = open_game(WatchScene, seed=2, many=True)
     watch = scene(driver)
     while not (watch.swarm.env.outcome != Outcome.FLYING).any():
         watch.swarm.step()
     watch.world.shown = int(np.flatnonzero(watch.swarm.env.outcome != Outcome.FLYING)[0])
     driver.key(pygame.K_SPACE)
-    others = np.arange(16) != watch.world.shown
+    others = np.arange(64) != watch.world.shown
     before = watch.swarm.env.observe()[others]
     driver.key(pygame.K_g)
     driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)

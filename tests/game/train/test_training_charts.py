@@ -119,27 +119,22 @@ def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both() 
     assert run_style(25) == run_style(1)
 
 
-@pytest.mark.parametrize(("axis", "end", "reach"), [(0, 367.0, 12.0), (1, 4e6, 2e5)])
-def test_a_short_run_beside_a_long_one_is_measured_by_either_axis(axis: int, end: float, reach: float) -> None:
+def test_a_short_run_beside_a_long_one_is_measured_by_the_same_seconds() -> None:
     charts = TrainingCharts()
-    charts.measure_by(axis)
     looked(charts, long_run(12.0, 200_000.0), Beside([EarlierRun("long", long_run(367.0, 4e6), 1)]))
     for chart in charts.charts:
-        assert chart.x_range == pytest.approx((0.0, end))
-        assert chart.runs[0].x[-1] == pytest.approx(reach)
-        assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
+        assert chart.x_range == pytest.approx((0.0, 367.0))
+        assert chart.runs[0].x[-1] == pytest.approx(12.0)
 
 
-@pytest.mark.parametrize(("axis", "place"), [(0, 50.0), (1, 500_000.0)])
-def test_a_place_on_the_axis_is_a_moment_of_the_run(axis: int, place: float) -> None:
+def test_a_place_on_the_axis_is_a_moment_of_the_run() -> None:
     charts, run = TrainingCharts(), long_run(100.0, 1e6)
-    charts.measure_by(axis)
     looked(charts, run)
-    assert charts.decisions_at(place) == pytest.approx(500_000)
-    assert charts.decisions_at(2e6) == np.inf, "beyond its end is now"
+    assert charts.decisions_at(50.0) == pytest.approx(500_000)
+    assert charts.decisions_at(200.0) == np.inf, "beyond its end is now"
     charts.go_to(500_000)
     looked(charts, run)
-    assert [chart.marker for chart in charts.charts] == pytest.approx([place] * 2)
+    assert [chart.marker for chart in charts.charts] == pytest.approx([50.0] * 2)
     charts.go_to(None)
     assert charts.charts[0].marker is None
 

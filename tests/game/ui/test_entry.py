@@ -9,7 +9,6 @@ import pytest
 from game.core.names import fitting
 from game.core.scene import Transition
 from game.input.bindings import Command
-from game.ui import entry
 from game.ui.context import Context
 from game.ui.entry import TextLine
 from game.ui.panel import Panel
@@ -114,7 +113,7 @@ def test_only_what_fits_is_written_and_never_more_than_the_limit():
 
 def test_the_clipboard_is_pasted_copied_and_cut(monkeypatch: pytest.MonkeyPatch):
     copied: list[str] = []
-    monkeypatch.setattr(entry, "clipboard_paste", lambda: "run/7\n")
+    monkeypatch.setattr(pygame.scrap, "get_text", lambda: "run/7\n")
     monkeypatch.setattr(pygame.scrap, "put_text", copied.append)
     line = line_of("", fits=fitting)
     press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
@@ -123,6 +122,16 @@ def test_the_clipboard_is_pasted_copied_and_cut(monkeypatch: pytest.MonkeyPatch)
     press(line, *[pygame.K_RIGHT] * 3, mod=pygame.KMOD_LSHIFT)
     press(line, pygame.K_c, pygame.K_x, mod=pygame.KMOD_LCTRL)
     assert (copied, line.text, line.edit_position) == (["run", "run"], "7", 0)
+
+
+def test_a_clipboard_that_is_no_text_changes_nothing(monkeypatch: pytest.MonkeyPatch):
+    def nonsense() -> str:
+        return b"\xff\xfe".decode()
+
+    monkeypatch.setattr(pygame.scrap, "get_text", nonsense)
+    line = line_of("run")
+    press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
+    assert line.text == "run"
 
 
 def test_a_held_key_repeats_until_it_is_let_go():

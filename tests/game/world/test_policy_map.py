@@ -1,4 +1,4 @@
-"""The map of a policy shows what a lander would do, or expect, if it were really put there."""
+"""The map of a policy shows what a lander would do if it were really put there."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +14,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.networks import Policy
-from game.scenes.watch.policy_map import ACTION, COLOURS, OFF, SCORE, PolicyMap
+from game.scenes.watch.policy_map import COLOURS, PolicyMap
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from game.world.camera import View
@@ -43,11 +43,11 @@ def whole(policy_map: PolicyMap, env: LanderEnv, policy: Policy, most: int = 200
     raise AssertionError("no whole map")
 
 
-@pytest.mark.parametrize(("name", "kind"), [("modern", SCORE), ("classic", ACTION), ("scripted", ACTION)])
-def test_a_cell_is_the_decision_of_a_lander_that_is_really_there(env: LanderEnv, name: str, kind: int):
+@pytest.mark.parametrize("name", ["modern", "classic", "scripted"])
+def test_a_cell_is_the_decision_of_a_lander_that_is_really_there(env: LanderEnv, name: str):
     policy = ScriptedPilot() if name == "scripted" else DeepQAgent.load(MODELS / name)
     policy_map = PolicyMap()
-    policy_map.kind = kind
+    policy_map.on = True
     whole(policy_map, env, policy)
     cells = policy_map.cells
     assert cells is not None
@@ -67,8 +67,7 @@ def test_a_cell_is_the_decision_of_a_lander_that_is_really_there(env: LanderEnv,
             values = np.sort(decided.points[0])
             if values[-1] - values[-2] > 1e-3:  # else a batch may round the other way
                 assert decided.action[0] == cells.decision.action[number]
-            assert cells.scores is not None
-            assert cells.scores.ravel()[number] == pytest.approx(values[-1], abs=1e-3)
+            assert cells.decision.points[number].max() == pytest.approx(values[-1], abs=1e-3)
         compared += 1
     assert compared > 25
 
@@ -92,7 +91,7 @@ def test_it_is_computed_in_pieces_and_only_when_something_has_changed(env: Lande
 
     policy_map.follow(env, 1, Counted())
     assert not asked  # while it is off
-    policy_map.kind = ACTION
+    policy_map.on = True
     updates = whole(policy_map, env, Counted())
     assert updates - 1 == len(asked) > 4
     assert max(asked) < 300
@@ -103,27 +102,10 @@ def test_it_is_computed_in_pieces_and_only_when_something_has_changed(env: Lande
     assert whole(policy_map, env, Counted()) <= updates
 
 
-def test_the_scale_of_scores_holds_what_it_has_held(env: LanderEnv):
-    policy, policy_map = DeepQAgent.load(MODELS / "modern"), PolicyMap()
-    policy_map.kind = SCORE
-    whole(policy_map, env, policy)
-    first = policy_map.scale
-    assert first is not None
-    assert first[0] < first[1]
-    assert all(end % 10 == 0 for end in first)
-    env.begin_at(1, np.array([0, 12, 6, -6, 2.0, 3.0]))
-    whole(policy_map, env, policy)
-    assert policy_map.scale is not None
-    assert policy_map.scale[0] <= first[0]
-    assert policy_map.scale[1] >= first[1]
-    policy_map.forget()
-    assert policy_map.scale is None
-
-
 def test_a_place_has_the_colour_of_its_action(env: LanderEnv):
     canvas = Canvas(pygame.Surface((1280, 720)))
     policy_map = PolicyMap()
-    policy_map.kind = ACTION
+    policy_map.on = True
     whole(policy_map, env, DeepQAgent.load(MODELS / "modern"))
     policy_map.draw(canvas, View(1.0))
     cells = policy_map.cells
@@ -151,33 +133,19 @@ def scene(driver: Driver) -> WatchScene:
 def test_a_key_a_button_and_the_row_choose_the_map(open_game: Open, context: Context):
     driver = open_game(WatchScene, seed=2)
     assert scene(driver).network.name == "modern"
-    kinds = []
-    for press in (driver.key,) * 3:
-        press(pygame.K_m)
-        kinds.append(scene(driver).world.policy_map.kind)
-    assert kinds == [ACTION, SCORE, OFF]
+    shown = []
+    for _ in range(3):
+        driver.key(pygame.K_m)
+        shown.append(scene(driver).world.policy_map.on)
+    assert shown == [True, False, True]
+    driver.key(pygame.K_m)
     row = driver.widget(texts.WATCH_MAP)
     for _ in range(3):
         driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     assert driver.form.focused is row
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     driver.frames(20)
-    assert scene(driver).world.policy_map.kind == ACTION
+    assert scene(driver).world.policy_map.on
     assert scene(driver).world.policy_map.cells is not None
-    driver.click(row._places[SCORE].center)
-    assert scene(driver).world.policy_map.kind == SCORE
-    driver.key(pygame.K_m)
-    assert scene(driver).world.policy_map.kind == OFF
-
-
-def test_written_rules_have_no_map_of_scores(open_game: Open, context: Context):
-    driver = open_game(WatchScene, seed=2)
-    driver.keys(pygame.K_m, pygame.K_m)
-    assert scene(driver).world.policy_map.kind == SCORE
-    driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)
-    assert scene(driver).network.name == "scripted"
-    driver.frames(12)
-    assert scene(driver).world.policy_map.kind == ACTION
-    assert driver.widget(texts.WATCH_MAP).options == texts.MAP_KINDS[:2]
-    driver.key(pygame.K_LEFT)
-    assert driver.widget(texts.WATCH_MAP).options == texts.MAP_KINDS
+    driver.click(row._places[0].center)
+    assert not scene(driver).world.policy_map.on

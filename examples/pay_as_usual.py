@@ -1,4 +1,4 @@
-"""A pay of your own: what each decision earns. These are the nine parts of the usual pay."""
+"""What each decision earns: the nine parts of the usual pay. Change a copy, and train --pay FILE."""
 
 import numpy as np
 
