@@ -138,14 +138,15 @@ def _module(path: str, source: str) -> Any:
     sys.modules[name] = module
     # Not what is on the disk by the time that somebody looks.
     linecache.cache[path] = len(source), None, source.splitlines(keepends=True), path
-    exec(compile(source, path, "exec", dont_inherit=True), vars(module))
+    exec(compile(source.removeprefix("\ufeff"), path, "exec", dont_inherit=True), vars(module))  # as some editors begin
     return module
 
 
 def _function(names: dict[str, Any], name: str) -> Callable[..., Any]:
     if not callable(function := names.get(name)):
         raise AnswerError(f"there is no function {name} in it")
-    if inspect.iscoroutinefunction(function) or inspect.isasyncgenfunction(function):
+    flags = (inspect.iscoroutinefunction, inspect.isasyncgenfunction)
+    if any(is_async(each) for is_async in flags for each in (function, type(function).__call__)):
         raise AnswerError(f"{name} is async: it must be a plain function, def {name}")
     return function  # type: ignore[no-any-return]
 
