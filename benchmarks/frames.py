@@ -182,7 +182,7 @@ def rows() -> dict[str, Row]:
             for name in ("modern", "classic")
         },
         "dream": Row(DreamScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
-        "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
+        "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n)),
         "inside, classic": of_seven(DigitInsideScene, (pygame.K_n,), "classic"),
         "whynot, modern": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r)),
         "whynot, classic": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r), "classic"),

@@ -33,7 +33,7 @@ def full_history():
     for number in range(10):
         history.append(point(number))
     history.append(checkpoint(0))
-    history.append(checkpoint(300, {"count": 1, "mean": [0.5], "squares": [0.0]}))
+    history.append(checkpoint(300, {"count": 1, "origin": [0.0], "mean": [0.5], "squares": [0.0]}))
     history.append(SettingChange(200, "learning_rate", 0.002, 0.001))
     history.append(SettingChange(200, "mirror", True, False))
     history.append(Validation(100, 0.75, -3.5, True))
