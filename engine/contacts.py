@@ -32,7 +32,6 @@ class Contacts(Manifold):
     restitution: Array  # (m,)
     impulse: Array  # (m, 3) N·s: normal at each point, friction; begins with what the last step needed
     approach: Array  # (m, 3) m/s before the impulses: closing at each point, then sliding
-    age: Ints  # (m,) steps for which the pair has touched without a break
     colour: Ints  # (m,) rising: contacts of one colour share no body that can move, so they are solved at once
 
     def __len__(self) -> int:
@@ -81,7 +80,6 @@ class NarrowPhase:
             restitution=self._restitution[pair],
             impulse=np.zeros((len(rows), 3)),
             approach=np.zeros((len(rows), 3)),
-            age=np.zeros(len(rows), dtype=np.intp),
             colour=colours,
         )
 
@@ -111,7 +109,6 @@ class NarrowPhase:
         # There is one friction for both points: it stays if all of the points have.
         unchanged = (same == contacts.valid[now]).all(axis=1)
         contacts.impulse[now] = last.impulse[then] * np.column_stack([same, unchanged])
-        contacts.age[now] = last.age[then] + 1
         if pass_on and not unchanged.all():
             changed = np.flatnonzero(~unchanged)
             _pass_on(contacts, now[changed], last.take(then[changed]), same[changed])

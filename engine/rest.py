@@ -2,9 +2,10 @@
 
 Bodies that touch, and those that they touch in turn, are an island, and an island sleeps and wakes as one: none of its
 bodies could move without the others. What holds it up, a body that no force can move, links no islands. An island
-sleeps while each of its bodies has been still for half a second and something holds it up, so that a body that floats,
-or has only begun to slide, is never stopped. Asleep, it costs nothing: it is not moved, nor tried for contacts with
-what sleeps or stands, and its contacts stay as they were.
+sleeps once each of its bodies has been still for half a second, without being pushed and without gaining speed, and
+something holds it up. So a body that floats, has only begun to slide, or stands at its turning point is never stopped.
+Asleep, it costs nothing: it is not moved, nor tried for contacts with what sleeps or stands, and its contacts stay as
+they were.
 
 Nothing is woken by name: what sleeps is compared with what it was after the last step. So a new place, a
 velocity, a force, a body taken out, a floor moved away and another gravity wake alike, whoever has set them.
@@ -21,7 +22,8 @@ from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints
 
 STILL: Final = 0.01  # m/s and rad/s up to which a body is still
-DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile: what has only begun to slide creeps farther
+DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile
+GAIN: Final = 1e-4  # m/s and rad/s by which its velocity may change meanwhile: what slides or turns back changes more
 STEPS: Final = 30  # for which it has to be still, half a second
 
 
@@ -40,11 +42,14 @@ class Rest:
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
         self.awake: Bools | None = None
         self._place: Array = state.pose.copy()  # where each body was when it came to be still
+        self._pace: Array = state.velocity.copy()  # and its velocity then
         self._still: Ints = np.zeros(state.active.shape, dtype=np.intp)  # for how many steps it has been
         self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
 
     def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
+        if self._allowed and state.force.any():
+            self._still[state.force.any(axis=2)] = 0  # what is pushed is not still
         if self.awake is None:
             return
         pose, velocity, active, gravity_before = self._seen
@@ -76,8 +81,9 @@ class Rest:
         """Let fall asleep what has been still for long enough."""
         if not self._allowed:
             return
-        still = ((np.abs(state.velocity) <= self._slow) & (np.abs(state.pose - self._place) < DRIFT)).all(axis=2)
-        self._place[~still] = state.pose[~still]
+        steady = (np.abs(state.pose - self._place) < DRIFT) & (np.abs(state.velocity - self._pace) < GAIN)
+        still = (steady & (np.abs(state.velocity) <= self._slow)).all(axis=2)
+        self._place[~still], self._pace[~still] = state.pose[~still], state.velocity[~still]
         self._still = (self._still + 1) * still
         if ((self._still >= STEPS) & self._dynamic & ~self.asleep).any():
             self._find_sleepers(contacts)

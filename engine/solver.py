@@ -23,11 +23,6 @@ SLOP = 0.005
 CORRECTION = 0.25
 # Smallest excess that is corrected, so that a stack at rest needs no correction; metres.
 TOLERANCE = 1e-4
-# In place of TOLERANCE for worlds in which bodies fall asleep, at a point under load whose bodies have touched for OLD
-# steps; metres. What overlap is left by then is jammed: to press it out, a few iterations at a time and without
-# friction, would make a heap creep for ever.
-LENIENCE = 1e-2
-OLD = 15
 
 
 class Solver:
@@ -62,18 +57,14 @@ class Solver:
             velocity[colour.index] += colour.effect(self._impulse[:, span])
         self._iterate(velocity, self._impulse, target, contacts.friction, iterations)
 
-    def correct_positions(self, state: BodyState, iterations: int, dt: float, lenient: bool = False) -> None:
-        """Move bodies out of overlaps, beyond SLOP, by shifts that are solved for as velocities are, and add no energy.
-
-        A `lenient` solver leaves alone up to LENIENCE more at points under load that have not parted within OLD steps.
-        """
+    def correct_positions(self, state: BodyState, iterations: int, dt: float) -> None:
+        """Move bodies out of overlaps beyond SLOP by shifts, solved for as velocities are, that add no energy."""
         contacts = self._contacts
         # Depths were measured before bodies moved by their new speeds. What a rebound has undone since is not undone
         # once more, or a ball would be lifted at each bounce.
         depth = contacts.depth.T - dt * self._constraints.speeds(state.velocity.reshape(-1))[:2]
         excess = np.where(contacts.valid.T, depth - SLOP, 0.0)
-        jammed = (contacts.age >= OLD) & (self._impulse[:2] > 0) & lenient
-        excess[excess < np.where(jammed, LENIENCE, TOLERANCE)] = 0.0
+        excess[excess < TOLERANCE] = 0.0
         if not excess.any():
             return
         shift, push = np.zeros(state.velocity.size), np.zeros_like(self._impulse)  # m and rad; kg·m

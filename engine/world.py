@@ -31,8 +31,8 @@ class World:
     bodies come last. Raises ValueError for values without physical sense.
 
     Unless `sleeping` is off, what lies still falls asleep and costs little, until something about it changes. So that
-    it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of up to 1.5 cm
-    are left alone. Off, each step computes everything anew, as a flight needs that was recorded so.
+    a heap comes to lie still, impulses pass over to points that take the place of others. Flights are computed, and
+    were recorded, with it off.
     """
 
     def __init__(
@@ -169,7 +169,7 @@ class World:
             solver.solve_velocities(state, self.iterations, DT)
         integrate_position(state, movers, DT, rest.awake)
         if solver:
-            solver.correct_positions(state, max(2, self.iterations // 3), DT, lenient=self.sleeping)
+            solver.correct_positions(state, max(2, self.iterations // 3), DT)
         state.refresh_rotation(movers)
         state.force[:, movers] = 0.0
         self._keep(contacts)

@@ -1,4 +1,4 @@
-"""Where the packed program begins: the window, a command, a worker process of either, or a pilot's.
+"""Where the packed program begins: the window, a command, or a process that either has started.
 
 Who starts it by a double click sees no terminal, so what keeps it from starting is said in a window as well.
 """
@@ -15,18 +15,12 @@ from textwrap import wrap
 
 FAILED = 70  # the exit code: "internal software error" in sysexits.h
 REPORT = "tranquility-failure.txt"
-PILOT = "--pilot-process"  # ai.pilots.process starts the program so
 _SHOWN = 600  # tenths of a second
 
 
 def start() -> int:
     """Run the program. Return its exit code; a failure is told in one sentence, and kept in whole in a file."""
     try:
-        if PILOT in sys.argv[1:2]:
-            from ai.pilots import child
-
-            child.main()
-            return 0
         from tranquility.__main__ import main
 
         return main()

@@ -65,13 +65,14 @@ class Worker:
         context = get_context("spawn")
         payload = pickle.dumps((function, args, kwargs))
         connection, theirs = context.Pipe()
-        self._process = context.Process(target=serve, args=(theirs, payload, self.niceness), daemon=True)
+        # No daemon, as such a process may have no children: those that fly and pay from the player's files.
+        self._process = context.Process(target=serve, args=(theirs, payload, self.niceness))
         threads = (
             Thread(target=_read, args=(connection, self._inbox), daemon=True),
             Thread(target=_write, args=(connection, self._orders), daemon=True),
         )
         self._release = weakref.finalize(self, _end, self._process, connection, self._orders, threads)
-        # Runs before multiprocessing's own exit handler, which would wait for ever for a suspended child.
+        # Runs before multiprocessing's own exit handler, which would wait for ever for the child.
         atexit.register(self._release)
         try:
             self._process.start()

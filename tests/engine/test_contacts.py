@@ -33,7 +33,7 @@ def test_a_point_is_the_same_as_long_as_the_same_faces_make_it():
     assert len(set(collide(Circle(1.0), np.zeros(3), Circle(1.0), np.array([0, 1.9, 0])).feature[0])) == 2
 
 
-def contacts(points, feature, impulse=(0.0, 0.0, 0.0), normal=UP, pair=3, world=1, age=7):
+def contacts(points, feature, impulse=(0.0, 0.0, 0.0), normal=UP, pair=3, world=1):
     """One contact; a point that is None is not there."""
     return Contacts(
         normal=np.array([normal]),
@@ -48,7 +48,6 @@ def contacts(points, feature, impulse=(0.0, 0.0, 0.0), normal=UP, pair=3, world=
         restitution=np.zeros(1),
         impulse=np.array([impulse], dtype=float),
         approach=np.zeros((1, 3)),
-        age=np.array([age]),
         colour=np.zeros(1, dtype=int),
     )
 
@@ -89,40 +88,11 @@ def test_impulses_a_step_begins_with(subtests):
             both = now.with_others(contacts((A, B), (1, 2), pair=5))  # which did not touch
             narrow.warm_start(both, OTHER.with_others(last), pass_on=pass_on)
             assert both.impulse.tolist() == [list(passed if pass_on else kept), [0, 0, 0]]
-            assert both.age[0] == 8
 
 
 def test_impulses_of_other_worlds_and_pairs_are_no_ones():
     narrow = pair_of_boxes()
     for last in (contacts((A, B), (1, 2), (5, 3, 2), world=0), contacts((A, B), (1, 2), (5, 3, 2), pair=4)):
-        now = contacts((A, B), (1, 2), age=0)
+        now = contacts((A, B), (1, 2))
         narrow.warm_start(now, last, pass_on=True)
         assert now.impulse.tolist() == [[0, 0, 0]]
-        assert now.age.tolist() == [0]
-
-
-def test_the_age_of_a_contact_is_how_long_it_has_touched():
-    world = World(gravity=(0.0, -9.81), sleeping=False)
-    world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
-    box = world.add(Polygon.box(1.0, 1.0), (0.0, 0.5))
-    for age in range(5):
-        world.step()
-        assert world.contacts.age.tolist() == [age]
-    box.position = (0.0, 3.0)
-    advance(world, 120)
-    first = int(world.contacts.age[0])
-    assert first < 100
-    advance(world, 3)
-    assert world.contacts.age.tolist() == [first + 3]
-
-
-def test_an_overlap_that_is_not_pressed_out_in_a_quarter_of_a_second_is_left_alone():
-    for sleeping in (True, False):
-        world = World(gravity=(0.0, -9.81), sleeping=sleeping)
-        world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
-        box = world.add(Polygon.box(1.0, 1.0), (0.0, 0.5), friction=0.0)
-        advance(world, 20)
-        world.state.pose[0, box.index, 1] -= 0.008  # not by `set`: the contact goes on
-        world.state.velocity[:] = 0.0
-        advance(world, 20)
-        assert (box.position[0, 1] < 0.493) == sleeping

@@ -166,6 +166,55 @@ def test_what_slides_ever_faster_is_not_stopped_however_slowly_it_begins():
     assert box.velocity[:, 0] == pytest.approx([0.06, 0.15, 0.6], rel=1e-6)
 
 
+@pytest.mark.parametrize("mass", [1.0, 50.0])
+def test_what_is_pulled_however_weakly_does_not_sleep(mass):
+    world = World(gravity=(0.0, -9.81))
+    world.add(Polygon.box(40.0, 1.0), (0.0, -0.5), static=True, friction=0.0)
+    box = world.add(BOX, (0.0, 0.5), mass=mass, friction=0.0)
+    seconds = 20
+    for _ in range(60 * seconds):
+        box.apply_force((0.001, 0.0))
+        world.step()
+        assert not world.asleep.any()
+    assert box.velocity[0, 0] == pytest.approx(0.001 / mass * seconds, rel=1e-6)
+
+
+@pytest.mark.parametrize("pull", [0.0005, 0.002, 0.01, 0.05])
+def test_what_stands_at_its_turning_point_does_not_sleep(pull):
+    world = World(gravity=(-pull, -9.81))  # a floor that slopes a little, without friction
+    world.add(Polygon.box(40.0, 1.0), (0.0, -0.5), static=True, friction=0.0)
+    box = world.add(BOX, (0.0, 0.5), friction=0.0)
+    box.velocity = (2 * pull, 0.0)
+    advance(world, 90)
+    advanced = 240
+    for _ in range(advanced):
+        world.step()
+        assert not world.asleep.any()
+    assert box.velocity[0, 0] == pytest.approx(2 * pull - pull * (90 + advanced) / 60, abs=1e-9)
+
+
+def high_heap():
+    random = np.random.default_rng(0)
+    world = World(gravity=(0.0, -9.81))
+    world.add(Polygon.box(60.0, 1.0), (0.0, -0.5), static=True)
+    for side in (-1, 1):
+        world.add(Polygon.box(1.0, 40.0), (side * 6.0, 20.0), static=True)
+    for i in range(100):
+        size, place = random.uniform(0.5, 1.1, 2), (random.uniform(-1, 1) + 2.2 * (i % 5 - 2), 1.0 + 1.6 * (i // 5))
+        world.add(Polygon.box(*size), place, random.uniform(0, 3), friction=0.5)
+    return world
+
+
+@pytest.mark.slow
+def test_a_high_heap_of_a_hundred_boxes_comes_to_rest():
+    """Without impulses that pass over to new points it creeps by centimetres a second for ever."""
+    world = advance(high_heap(), 1800)
+    before = world.state.pose.copy()
+    advance(world, 300)
+    assert np.abs(world.state.pose - before)[..., :2].max() < 0.005
+    assert np.where(world.contacts.valid, world.contacts.depth, 0.0).max() < 0.01
+
+
 def heap(seed):
     random = np.random.default_rng(seed)
     world = World(gravity=(0.0, -9.81))

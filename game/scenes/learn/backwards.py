@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
@@ -21,7 +20,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
 from game.explain.figures import decimal, percent
-from game.scenes.learn.chapter import Chapter, Code
+from game.scenes.learn.chapter import Chapter
 from game.ui.context import Context
 from game.ui.panel import Column
 
@@ -29,6 +28,7 @@ RATE: Final = 0.01
 SEARCHED: Final = 1000  # test images in which misread ones are looked for
 OTHERS: Final = slice(1000, 1500)  # test images that the step was not made for
 MOST_STEPS: Final = 9
+ANSWERS: Final = (0.0, 0.2, 1.0)  # shares of all numbers, of the answers
 _MODEL: Final = "classic"
 # Left end, width, columns and rows of the pictures, as shares of the whole: the image, and the two layers of units.
 _BOXES: Final = ((0.0, 0.23, 28, 28), (0.28, 0.2, 10, 10), (0.53, 0.1, 5, 10))
@@ -49,7 +49,7 @@ class BackwardsChapter(Chapter):
 
     """
 
-    key, answer, door, shape, explains = "backwards", 1, Route("digits"), 0.42, True
+    key, door, shape, explains = "backwards", Route("digits"), 0.42, True
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -143,18 +143,10 @@ class BackwardsChapter(Chapter):
             count=self.network.values.size, right=self._right_before, now=self._right(),
         )  # fmt: skip
 
-    def code(self) -> Sequence[Code]:
-        shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
-        weights = " x ".join(map(str, (self.blames[2].size, DIGITS)))
-        return [
-            Code(
-                NeuralNetwork.backward_propagate,
-                FullyConnectedLayer.backward_propagate,
-                {FullyConnectedLayer.backward_propagate: shapes},
-            ),
-            Code(FullyConnectedLayer.input_error, np.dot, {np.dot: weights}),
-            Code(FullyConnectedLayer.fill_gradients, np.dot),
-        ]
+    def verdict(self) -> int | None:
+        """Return the answer that the share of numbers which the last step moved is next to."""
+        share = self.moved / self.network.values.size
+        return int(np.argmin(np.abs(np.array(ANSWERS) - share))) if self.steps else None
 
     def below(self, column: Column) -> None:
         column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)

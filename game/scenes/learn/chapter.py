@@ -1,10 +1,10 @@
-"""Chapter: one question of the path, with something real and small to touch; `scene` shows it, in four pages."""
+"""Chapter: one question of the path, with something real and small to touch; `scene` shows it, in three pages."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import pygame
@@ -19,18 +19,18 @@ from game.ui.panel import Column
 
 @dataclass(frozen=True)
 class Code:
-    """A function of ours to show as it runs.
+    """A function of ours whose line does what the chapter is about.
 
     Attributes:
         function: the function whose source is shown.
-        current: what the line is found by that is lit; None for none.
-        notes: by what a line is found by, what stands beside it: numbers of the case at hand.
+        line: what the line is found by, which is lit.
+        note: what stands beside it: numbers of the case at hand.
 
     """
 
     function: Callable[..., Any]
-    current: Mark | None = None
-    notes: Mapping[Mark, str] = field(default_factory=dict)
+    line: Mark
+    note: str
 
 
 class Chapter(ABC):
@@ -38,26 +38,20 @@ class Chapter(ABC):
 
     Attributes:
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
-        answer: number of the answer that every try shows; None if that depends on what was tried.
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
         explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
-        listed: whether its list of steps makes it done, with or without an answer to its question.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
-        complete: whether all that it asks for was done, beyond a try; then its "see why" makes it done.
         problem: why there is nothing to show or to try; empty if there is.
         changed: set when there are other controls than before; the scene describes them anew.
 
     """
 
     key: ClassVar[str]
-    answer: ClassVar[int | None] = None
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
     explains: ClassVar[bool] = False
-    listed: ClassVar[bool] = False
     problem = ""
-    complete = True
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -84,24 +78,21 @@ class Chapter(ABC):
     def restart(self) -> None:
         """Begin anew, as when the chapter was opened."""
 
+    @abstractmethod
     def verdict(self) -> int | None:
         """Return the number of the answer that the player's own tries have shown; None while they decide nothing."""
-        return self.answer
 
     @abstractmethod
     def why(self) -> str:
         """Return what the player's own try has shown, with its numbers; asked once it is `tried`."""
 
-    @abstractmethod
-    def code(self) -> Sequence[Code]:
-        """Return the functions to show, with the numbers of this moment; the same functions each time."""
+    def code(self) -> Code | None:
+        """Return the line of ours that did it, with the numbers of this moment; None where no line has any."""
+        return None
 
     @abstractmethod
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         """Draw the picture in a box, in points, `alpha` of the way from the step before to this one."""
-
-    def enter(self) -> None:  # noqa: B027 - only one depends on other screens
-        """Come to the top again, after another screen."""
 
     def update(self) -> None:  # noqa: B027 - nothing moves in some chapters
         """Advance by 1/60 s; called on every page but the first, on which the picture stands still."""

@@ -127,7 +127,7 @@ class DownhillChapter(Chapter):
 
     """
 
-    key, answer, door = "downhill", 1, Route("train")
+    key, door = "downhill", Route("train")
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -202,11 +202,13 @@ class DownhillChapter(Chapter):
         templates = texts.LEARN_DOWNHILL_WHY
         return " ".join(templates[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
 
-    def code(self) -> Sequence[Code]:
+    def verdict(self) -> int | None:
+        """Return that longer steps help up to a point, once some were too short, some right and some too long."""
+        return 1 if {"short", "right", "long"} <= self.results.keys() else None
+
+    def code(self) -> Code:
         slope = float((self.plain if self.valley else self.line).slopes[0])
-        plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{decimal(slope, 3, '+')} · {self.rate:.3f}"})
-        adam = Code(Adam._fill_step, np.divide, {np.divide: texts.LEARN_DOWNHILL_ADAM_NOTE})
-        return [plain, adam, Code(Optimizer.step, "values")]
+        return Code(SGD._fill_step, np.multiply, f"{decimal(slope, 3, '+')} · {self.rate:.3f}")
 
     def below(self, column: Column) -> None:
         column.text(lambda: self._descent_words(self.plain) if self.valley else self._step(), size=SMALL, colour=HUMAN)

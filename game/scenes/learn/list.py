@@ -1,19 +1,26 @@
-"""Learn scene: the list of the path's chapters, in any order, with what has been done."""
+"""Learn scene: the path's chapters, in any order, and four things to do with a network of one's own; what is done."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 from typing import Final
 
+from ai.pilots.shelf import Shelf
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
+from game.flight import networks
+from game.flight import own as own_pilots
+from game.flight.logbook import Records
 from game.scenes.learn.path import FIRST, PATH, Progress
+from game.training.library import Library
 from game.ui.actions import Table
 from game.ui.context import Context
 from game.ui.listing import ListRow, Row
-from game.ui.panel import Panel
+from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
+from game.ui.widget import OnPress
 
 _KEYS: Final = tuple(PATH)
 _LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
@@ -22,7 +29,13 @@ _COLUMNS: Final = (72.0, 0.0)  # from the right end of the list: where minutes a
 
 
 class LearnScene(PanelScene):
-    """Learn scene: the chapters, and the chosen one's question beside them, or below them in a narrow window."""
+    """Learn scene: the chapters, and the chosen one's question beside them, or below them in a narrow window.
+
+    Attributes:
+        chosen: key of the chapter whose question is shown.
+        own: what the player has done with a network of their own, by the keys of `LEARN_OWN`.
+
+    """
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -30,11 +43,13 @@ class LearnScene(PanelScene):
         self._list: ListRow | None = None
         self._choose_last()
         self.build()
+        assert self._list
+        self.form.focus(self._list)
 
     def _choose_last(self) -> None:
-        """Choose the chapter that was left, or the first that is not done."""
-        last = self.context.settings.chapter
-        self.chosen = last if last in PATH else next((key for key in PATH if not self._progress.done(key)), FIRST)
+        """Choose the chapter that was left, or the first that is not done where that one is."""
+        last, undone = self.context.settings.chapter, [key for key in PATH if not self._progress.done(key)]
+        self.chosen = last if last in undone else next(iter(undone), FIRST)
 
     def enter(self) -> None:
         self._choose_last()
@@ -46,6 +61,8 @@ class LearnScene(PanelScene):
     def describe(self, panel: Panel) -> None:
         panel.title(texts.LEARN_TITLE)
         panel.aside(texts.LEARN_LINE.format(done=sum(map(self._progress.done, PATH)), count=len(PATH)))
+        panel.gap(8)
+        panel.button(texts.ONE_FILE, partial(push, "one_file"), texts.ONE_FILE_ASIDE, colour=INK)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
         self._list = left.listing(
@@ -63,7 +80,22 @@ class LearnScene(PanelScene):
             texts.LEARN_VERBS[self._progress.state(self.chosen)], self._open, size=TITLE, colour=INK
         )
         right.gap(24)
+        self._describe_own(right)
+        right.gap(12)
         right.button(texts.LEARN_PHYSICS, partial(push, "physics"), texts.LEARN_PHYSICS_ASIDE)
+
+    def _describe_own(self, column: Column) -> None:
+        """Add what to do with a network of one's own: each leads to where it is done, and is ticked once it was."""
+        self.own = done_with_own(self.context)
+        doors: dict[str, OnPress] = {
+            "train": partial(push, "train"), "land": partial(push, "runs"), "hand": partial(push, "play"),
+            "file": lambda: push("pilots", partial(own_pilots.take, self.context)),
+        }  # fmt: skip
+        column.caption(texts.LEARN_OWN_TITLE)
+        for name, press in doors.items():
+            done = self.own[name]
+            column.button(texts.LEARN_OWN[name], press, texts.LEARN_STATES[2] if done else "", size=SMALL + 1,
+                          colour=MUTE if done else INK)  # fmt: skip
 
     def _row(self, key: str) -> Row:
         minutes = texts.LEARN_MINUTES.format(count=PATH[key].minutes)
@@ -79,3 +111,20 @@ class LearnScene(PanelScene):
 
     def _open(self) -> Transition:
         return push("chapter", self.chosen)
+
+
+def done_with_own(context: Context) -> dict[str, bool]:
+    """Return what the player has done with a network or a pilot of their own, read from their files."""
+    library = Library(context.user_dir)
+    runs = [run for run in library.runs() if not run.problem or run.flyable]
+    folders = networks.folders(context.models_dir, context.user_dir)
+    own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
+    pilots = []
+    with suppress(OSError):
+        pilots = Shelf(context.user_dir).measured()
+    return {
+        "train": bool(runs),
+        "land": any(run.success for run in (*runs, library.rescued()) if run),
+        "hand": any(entry.network in own and entry.human < 1.0 for entry in Records(context.user_dir).entries()),
+        "file": any(pilot.landed >= own_pilots.GOOD for pilot in pilots),
+    }

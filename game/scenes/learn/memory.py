@@ -1,4 +1,4 @@
-"""Chapter 9, learning from yesterday: the replay memory as a wall of moments, and what is drawn from it."""
+"""Chapter 8, learning from yesterday: the replay memory as a wall of moments, and what is drawn from it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from ai.agent.agent import DeepQAgent
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import ReplayBuffer
 from ai.environment import Doubles
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
@@ -109,15 +108,11 @@ class MemoryChapter(RunsChapter):
             for kind, (before, after) in self.results.items()
         )
 
-    def code(self) -> Sequence[Code]:
+    def code(self) -> Code:
         memory = self.states[-1][0].memory if self.states else None
         count = memory.first + len(memory.cells.action) - memory.oldest if memory else 0
         held = texts.LEARN_MEMORY_HELD.format(count=count) if memory else ""
-        return [
-            Code(ReplayBuffer.sample, np.random.Generator.integers, {np.random.Generator.integers: held}),
-            Code(PrioritisedReplayBuffer.sample, np.ndarray.searchsorted),
-            Code(DeepQAgent._learn_from, ReplayBuffer.sample),
-        ]
+        return Code(ReplayBuffer.sample, np.random.Generator.integers, held)
 
     def below(self, column: Column) -> None:
         super().below(column)

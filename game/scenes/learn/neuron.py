@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Final
@@ -16,7 +15,6 @@ from ai.nn import ActivationFunctions, ActivationLayer, CostFunctions, FullyConn
 from engine import DT
 from game.core import texts
 from game.core.scene import Route
-from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NET, SMALL
 from game.explain.figures import decimal
@@ -54,7 +52,7 @@ class NeuronChapter(Chapter):
 
     """
 
-    key, answer, door = "neuron", 2, Route("watch")
+    key, door = "neuron", Route("watch")
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -150,14 +148,18 @@ class NeuronChapter(Chapter):
         template = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
         return template.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
 
-    def code(self) -> Sequence[Code]:
+    def verdict(self) -> int | None:
+        """Return what the neuron that stayed in sight for long enough has sensed beside the tilt."""
+        seconds, (_, spin, speed) = self.best
+        return None if seconds < GOAL else 2 if speed else 1 if spin else 0
+
+    def code(self) -> Code:
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
         total = " ".join(
             f"{decimal(value, 2, '+')}×{decimal(weight, 0)}"
             for value, weight in zip(inputs.tolist(), weights.tolist(), strict=True)
         )
-        sums: dict[Mark, str] = {np.dot: total, "output": decimal(float(self.layer.bias[0]), 0)}
-        return [Code(FullyConnectedLayer.predict, np.dot, sums)]
+        return Code(FullyConnectedLayer.predict, np.dot, total)
 
     def below(self, column: Column) -> None:
         column.text(self._summed, size=SMALL)

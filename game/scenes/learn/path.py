@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from game.core.settings import Settings
     from game.scenes.learn.chapter import Chapter
 
-PAGES: Final = ("predict", "try", "why", "code")
+PAGES: Final = ("predict", "try", "why")
 
 
 class Entry(NamedTuple):
@@ -28,12 +28,10 @@ PATH: Final[dict[str, Entry]] = {
     "downhill": Entry("downhill.DownhillChapter", 4),
     "backwards": Entry("backwards.BackwardsChapter", 3),
     "pay": Entry("pay.PayChapter", 5),
-    "moment": Entry("moment.MomentChapter", 4),
-    "choice": Entry("moment.ChoiceChapter", 3),
+    "choice": Entry("choice.ChoiceChapter", 4),
     "target": Entry("runs.TargetChapter", 3),
     "memory": Entry("memory.MemoryChapter", 4),
     "daring": Entry("runs.DaringChapter", 3),
-    "own": Entry("own.OwnChapter", 5),
 }
 FIRST: Final = next(iter(PATH))
 
@@ -75,7 +73,7 @@ class Progress:
         return 2 if self._of(key).get("done") is True else int(isinstance(self._settings.learnt.get(key), dict))
 
     def done(self, key: str) -> bool:
-        """Return whether a chapter's question was answered, its "see why" read, and all that it asks for done."""
+        """Return whether a chapter's question was answered by a try, and its "see why" read."""
         return self.state(key) == 2
 
     def shown(self, key: str) -> tuple[str, int | None]:
@@ -91,13 +89,8 @@ class Progress:
         """Keep what tries in a chapter have shown, for the next visit."""
         self._settings.learnt[key] = {**self._of(key), "why": why, "language": texts.LANGUAGE, "came": came}
 
-    @property
-    def raced(self) -> int | None:
-        """When the last race of a network of one's own was begun, in seconds; None before."""
-        return self._number("own", "raced")
-
     def note(self, key: str, **values: int | bool) -> None:
-        """Note that a chapter was opened, and a `guess`, that it is `done`, or when it was `raced`."""
+        """Note that a chapter was opened, and a `guess`, or that it is `done`."""
         self._settings.learnt[key] = {**self._of(key), **values}
 
     def _number(self, key: str, name: str) -> int | None:

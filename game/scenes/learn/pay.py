@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -10,7 +9,7 @@ import pygame
 
 from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
-from ai.lander.rewards import REWARDS, RewardWeights
+from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.history import Checkpoint
 from ai.training.lander_session import LanderSession
@@ -200,10 +199,10 @@ class PayChapter(Chapter):
             for key, flown in self.results.items()
         )
 
-    def code(self) -> Sequence[Code]:
+    def code(self) -> Code:
         pay = PAYS[self.pay]
-        weights = texts.LEARN_PAY_NOTE.format(time=points(pay.time / DT, 0), terminal=points(pay.terminal, 0))
-        return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
+        note = texts.LEARN_PAY_NOTE.format(time=points(pay.time / DT, 0), terminal=points(pay.terminal, 0))
+        return Code(LanderEnv.step, "parts", note)
 
     def below(self, column: Column) -> None:
         column.bar(lambda: self.decisions / DECISIONS)

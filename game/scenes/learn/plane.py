@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -16,15 +15,13 @@ from ai.nn import (
     CostFunctions,
     FullyConnectedLayer,
     NeuralNetwork,
-    Optimizer,
 )
 from game.core import texts
 from game.core.scene import Route
-from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, SMALL
-from game.scenes.learn.chapter import Chapter, Code
+from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import paint_heat
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -33,6 +30,7 @@ UNITS: Final = (0, 2, 4, 8)  # hidden units to choose from
 QUARTER: Final = 20  # points in each quarter of the plane
 STEPS: Final = 1200  # learning steps after which training rests
 SPOKEN: Final = 300  # learning steps after which a try says something
+NEARLY: Final = 0.95  # share of the points that is nearly all
 _RATE: Final = 0.02
 _GAP: Final = 0.12  # no point is nearer to an axis
 _CELLS: Final = 40
@@ -73,7 +71,7 @@ class PlaneChapter(Chapter):
 
     """
 
-    key, answer, door = "plane", 2, Route("train")
+    key, door = "plane", Route("train")
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
@@ -132,15 +130,14 @@ class PlaneChapter(Chapter):
             for units in sorted(self.results)
         )
 
-    def code(self) -> Sequence[Code]:
-        stages = self.network.activations(self.points)
-        shapes = " → ".join(str(stage.shape[1]) for stage in (self.points, *stages[1::2]))
-        passes: dict[Mark, str] = {FullyConnectedLayer.forward_propagate: shapes}
-        step: dict[Mark, str] = {"cost": f"{self.cost:.4f}", Optimizer.step: f"{self.network.values.size}"}
-        return [
-            Code(NeuralNetwork.forward_propagate, FullyConnectedLayer.forward_propagate, passes),
-            Code(NeuralNetwork.correct, NeuralNetwork.backward_propagate, step),
-        ]
+    def verdict(self) -> int | None:
+        """Return the fewest neurons that divided nearly all points; None before all fewer ones were tried, too."""
+        for answer, units in enumerate(UNITS[:-1]):
+            if units not in self.results:
+                return None
+            if self.results[units] >= NEARLY * len(self.points):
+                return answer
+        return None
 
     def below(self, column: Column) -> None:
         column.text(

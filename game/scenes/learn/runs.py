@@ -1,4 +1,4 @@
-"""Small runs in a worker process: what chapters that show them share, and chapters 8 and 10, two agents each."""
+"""Small runs in a worker process: what chapters that show them share, and chapters 7 and 9, two agents each."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.schedule import exploration
 from ai.environment import Doubles
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.rewards import RewardWeights
@@ -275,14 +274,9 @@ class TargetChapter(DuelChapter):
         sentence = texts.LEARN_TARGET_WHY[key].format(peak=peak, usual=least, bound=f"{BOUND:g}")
         return f"{sentence} {texts.LEARN_TARGET_LANDED.format(usual=usual, other=other)}"
 
-    def code(self) -> Sequence[Code]:
-        discount = texts.LEARN_TARGET_DISCOUNT.format(discount=SMALL_RUN.discount)
+    def code(self) -> Code:
         every = texts.LEARN_TARGET_EVERY.format(every=EVERY[self.choice])
-        return [
-            Code(DeepQAgent.targets, "targets", {"discount": discount}),
-            Code(DeepQAgent._next_value, "values", {"values": texts.LEARN_TARGET_JUDGE}),
-            Code(DeepQAgent._update_target, "gradient_steps", {"gradient_steps": every}),
-        ]
+        return Code(DeepQAgent._update_target, "gradient_steps", every)
 
     def caption(self, state: SmallState) -> str:
         expects = texts.LEARN_TARGET_EXPECTS.format(points=_figure(state.value))
@@ -340,8 +334,8 @@ class DaringChapter(DuelChapter):
         share = percent(DARING[self.flown])
         return texts.LEARN_DARING_WHY.format(share=share, never=never, other=other, decisions=self.LENGTH)
 
-    def code(self) -> Sequence[Code]:
-        return [Code(DeepQAgent.act, "explore", {"explore": f"ε = {DARING[self.choice]:g}"}), Code(exploration)]
+    def code(self) -> Code:
+        return Code(DeepQAgent.act, "explore", f"ε = {DARING[self.choice]:g}")
 
     def caption(self, state: SmallState) -> str:
         if state.landed is None:

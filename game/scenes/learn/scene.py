@@ -1,8 +1,7 @@
-"""Chapter scene: one chapter of the path, in four pages: predict, try, see why, in the code."""
+"""Chapter scene: one chapter of the path, in three pages: predict, try, see why."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
@@ -10,21 +9,21 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Push, Replace, Route, Transition
-from game.core.source import Source, source_of
+from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, TITLE, Colour
+from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, STEP, TEXT, TITLE, Colour
 from game.explain.code_listing import add_listing
 from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.learn.chapter import Code
 from game.scenes.learn.path import FIRST, PAGES, PATH, Progress, chapter_type, following
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column, Panel, Row
 from game.ui.panel_scene import PanelScene
+from game.ui.widget import OnPress
 
-PREDICT, TRY, WHY, CODE = range(len(PAGES))
+PREDICT, TRY, WHY = range(len(PAGES))
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
@@ -39,6 +38,7 @@ class ChapterScene(PanelScene):
     Attributes:
         chapter: the chapter that is shown.
         page: which of `PAGES` is shown, by its index.
+        in_code: whether "see why" shows the line of code that did it, in place of the picture.
 
     """
 
@@ -49,14 +49,13 @@ class ChapterScene(PanelScene):
         # One that is done asks for a guess again.
         guessed = self._progress.guess(key) is not None and not self._progress.done(key)
         self.page = TRY if guessed else PREDICT
-        self._function, self._code = 0, list[Code]()
+        self.in_code = False
         self._why, self._came = self._progress.shown(key)
         context.settings.chapter = key
-        self._progress.note(key, done=self._progress.done(key) and self.chapter.complete)
+        self._progress.note(key)
         self.turn_to(self.page)
 
     def enter(self) -> None:
-        self.chapter.enter()
         self.reword()
 
     def close(self) -> None:
@@ -71,13 +70,12 @@ class ChapterScene(PanelScene):
     def turn_to(self, page: int) -> None:
         """Show another page; "see why" makes a chapter done whose question a try has answered."""
         on_tabs = page != self.page and self.form.focused is self._tabs
-        self.page = page
+        self.page, self.in_code = page, False
         self.panel.scrolled = 0.0
         self.reword()
         if page == WHY and self._why:
             self._progress.show(self.key, self._why, self._came)
-            answered = self._came is not None or self._progress.done(self.key) or self.chapter.listed
-            self._progress.note(self.key, done=self.chapter.complete and answered)
+            self._progress.note(self.key, done=self._came is not None or self._progress.done(self.key))
         self.context.apply_settings()
         if not on_tabs:
             self.form.focus(self.form.widgets[1])
@@ -89,7 +87,6 @@ class ChapterScene(PanelScene):
         if self._tried:
             self._why, came = self.chapter.why(), self.chapter.verdict()
             self._came = self._came if came is None else came
-        self._code = list(self.chapter.code()) if self.page == CODE and not self.chapter.problem else []
         self.build()
 
     def _restart(self) -> None:
@@ -103,16 +100,15 @@ class ChapterScene(PanelScene):
 
     def actions(self) -> Table:
         again = [Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.page == TRY else []
-        on = texts.LEARN_NEXT_PAGE
-        if self.page == CODE:
-            on = texts.LEARN_NEXT_CHAPTER if following(self.key) else ""
+        last = texts.LEARN_NEXT_CHAPTER if following(self.key) else ""
+        on = last if self.page == WHY else texts.LEARN_NEXT_PAGE
         return [
             self.form.moves,
             self.form.changes,
             *again,
             Action(Command.NEXT, self._go_on, on),
             Action(Command.PREVIOUS, partial(self._turn, -1)),
-            *([self.explained.action()] if self.chapter.explains and self.page != CODE else []),
+            *([self.explained.action()] if self.chapter.explains else []),
             self.form.goes_back(texts.HINT_BACK),
         ]
 
@@ -139,7 +135,7 @@ class ChapterScene(PanelScene):
             self.turn_to(self.page + pages)
 
     def _go_on(self) -> Transition | None:
-        if self.page < CODE:
+        if self.page < WHY:
             self._turn(1)
             return None
         after = following(self.key)
@@ -155,12 +151,12 @@ class ChapterScene(PanelScene):
         self._tabs = panel.choice("", texts.LEARN_PAGES, self.page, self.turn_to)
         panel.gap(6)
         left, right = panel.beside(_SHARES, _LEAST, _APART)
-        [self._describe_predict, self._describe_try, self._describe_why, self._describe_code][self.page](left)
+        [self._describe_predict, self._describe_try, self._describe_why][self.page](left)
         self._picture: Row | None = None
         self._high = 0.0
         if self.chapter.problem:
             right.text(self.chapter.problem, colour=MUTE)
-        elif self.page == CODE:
+        elif self.in_code:
             self._describe_listing(right)
         else:
             self._picture = right.add(self._leave_room)
@@ -168,8 +164,12 @@ class ChapterScene(PanelScene):
             self.chapter.below(right)
         panel.gap(10)
         labels = (*texts.LEARN_ON, texts.LEARN_TO_CHAPTER if following(self.key) else texts.LEARN_TO_LIST)
-        door = [(words["door"], lambda: Push(self.chapter.door))] if self.page >= WHY else []
-        panel.words([(labels[self.page], self._go_on), *door])
+        further: list[tuple[str, OnPress]] = []
+        if self.page == WHY:
+            if not self.chapter.problem and self.chapter.code():
+                further.append((texts.LEARN_CODE[self.in_code], self._show_code))
+            further.append((words["door"], lambda: Push(self.chapter.door)))
+        panel.words([(labels[self.page], self._go_on), *further])
 
     def _leave_room(self, cursor: Cursor) -> None:
         """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
@@ -218,7 +218,7 @@ class ChapterScene(PanelScene):
         card.gap(8)
         said = answers[came] if came is not None else open_words
         if said:
-            card.caption(texts.LEARN_CAME[came == guess])
+            card.caption(texts.LEARN_UNSETTLED if came is None else texts.LEARN_CAME[came == guess])
             place = (card.right - 14, card.y + 0.6 * card.size)
             if came is not None and cursor.canvas:
                 cursor.canvas.marker("check" if came == guess else "cross", place, 16, colour)
@@ -229,26 +229,20 @@ class ChapterScene(PanelScene):
             cursor.canvas.fill(cursor.canvas.rect(cursor.left, top, 3, card.y - top), colour)
         cursor.y = card.y + 2 * STEP
 
-    def _describe_code(self, column: Column) -> None:
-        column.text(self.chapter.words["code"], size=_BODY)
-        column.gap(6)
-        for number, code in enumerate(self._code):
-            lit = number == self._function
-            column.button(code.function.__qualname__, partial(self._show_function, number), size=SMALL, weight="code",
-                          colour=NET if lit else MUTE)  # fmt: skip
-
-    def _show_function(self, number: int) -> None:
-        self._function = number
-        self.build()
+    def _show_code(self) -> None:
+        """Show the code, or the picture again."""
+        self.in_code = not self.in_code
+        self.reword()
 
     def _describe_listing(self, column: Column) -> None:
-        code = self._code[self._function]
+        code = self.chapter.code()
+        assert code is not None, "it was asked for"
         source = source_of(code.function)
         if source is None:
             column.text(texts.LESSON_NO_SOURCE, size=_BODY, colour=MUTE)
             return
-        current, notes = placed(source, code)
-        add_listing(column, _LISTING, lambda: (source, current, notes))
+        line = source.line_of(code.line)
+        add_listing(column, _LISTING, lambda: (source, line, {line: code.note}))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
@@ -258,9 +252,3 @@ class ChapterScene(PanelScene):
             self.chapter.draw(canvas, self._picture.box, alpha)
             canvas.surface.set_clip(before)
         self.explained.draw(canvas)
-
-
-def placed(source: Source, code: Code) -> tuple[int | None, Mapping[int, str]]:
-    """Return the number of the lit line, and what stands beside lines by their numbers."""
-    notes = {source.line_of(mark): note for mark, note in code.notes.items()}
-    return source.line_of(code.current) if code.current else None, notes

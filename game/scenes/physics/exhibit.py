@@ -1,4 +1,4 @@
-"""What an exhibit is: a law, a room with bodies, live labels, and a number that is measured."""
+"""What an exhibit is: a room with bodies that follow a law, live labels, and what is said of it."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Quantity:
     """Quantity of an exhibit that the visitor can change, named and written with its unit in `texts.QUANTITIES`.
 
     Attributes:
-        limits: least and greatest value: the law has been measured to hold from one to the other.
+        limits: least and greatest value.
         start: value at first.
         step: distance between two values that can be chosen.
 
@@ -96,25 +96,14 @@ class Quantity:
     start: float
     step: float
 
-    def spread(self, count: int) -> list[float]:
-        """Return at most `count` values that can be chosen, evenly spread over the range, both ends among them."""
-        low, high = self.limits
-        steps = np.unique(np.rint(np.linspace(0, round((high - low) / self.step), count)))
-        return [round(low + number * self.step, 6) for number in steps.tolist()]
-
 
 class Exhibit:
     """One law of the engine, in a room of its own: a floor at y = 0, and walls at the edges of the view.
 
     Attributes:
-        name: its name in `texts.EXHIBITS` and `texts.LAWS`.
-        patience: steps after which a run has measured, or will not.
-        points: values for which the whole range is measured, at most.
-        tolerance: share of the law's greatest value by which a measurement may differ from it.
+        name: its name in `texts.EXHIBITS`.
         width: width of the room, in metres.
-        weightless: whether there is no gravity, whatever was chosen.
         values: the quantities, by name.
-        result: the number that this run has measured; None until then, and if a hand has come in before.
         sprites: all that is drawn, by the image keys of `game.scenes.physics.bodies`.
         bodies: the movable bodies.
         rules: reference lines at known heights or places, as start and end in metres.
@@ -124,17 +113,12 @@ class Exhibit:
 
     name: ClassVar[str]
     quantities: ClassVar[tuple[Quantity, ...]]
-    patience: ClassVar[int]
-    points: ClassVar[int] = 9
-    tolerance: ClassVar[float] = 0.01
     width: ClassVar[float] = 28.0
-    weightless: ClassVar[bool] = False
 
     def __init__(self, gravity: float, values: Mapping[str, float] | None = None) -> None:
-        self.gravity = 0.0 if self.weightless else gravity
+        self.gravity = gravity
         self.values = {each.name: each.start for each in self.quantities} | dict(values or {})
-        self.result: float | None = None
-        self.world = World((0.0, -self.gravity))
+        self.world = World((0.0, -gravity))
         self.sprites: list[Sprite] = []
         self.bodies: list[Body] = []
         self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
@@ -148,20 +132,12 @@ class Exhibit:
 
     # What each exhibit says
 
-    @classmethod
-    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
-        """Return the number that the law gives for `result`, in closed form, with all quantities given."""
-        raise NotImplementedError
-
     def build(self) -> None:
         """Add the bodies."""
         raise NotImplementedError
 
-    def prepare(self) -> None:
-        """Apply the exhibit's own impulses before the next step."""
-
     def observe(self) -> None:
-        """Take the exhibit's measurements after a step; set `result` once it is known."""
+        """Take note of what is said of it, after each step."""
 
     @property
     def state(self) -> str:
@@ -180,7 +156,6 @@ class Exhibit:
 
     def step(self, grip: Grip | None = None) -> None:
         """Advance by 1/60 s, during which a grip may pull at a body."""
-        self.prepare()
         if grip:
             grip.pull()
             self.touched[grip.body.index] = True
@@ -210,9 +185,9 @@ class Exhibit:
             self.bodies.append(body)
         return body
 
-    def is_touched(self, *bodies: Body) -> bool:
-        """Whether a hand has come to any of these bodies."""
-        return bool(self.touched[[body.index for body in bodies]].any())
+    def is_touched(self, body: Body) -> bool:
+        """Whether a hand has come to this body."""
+        return bool(self.touched[body.index])
 
     @property
     def poses(self) -> Array:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
-from engine import DT, Body, Circle, Polygon
+from engine import Body, Circle, Polygon
 from game.core import texts
 from game.scenes.physics.exhibit import Exhibit, Label, Quantity, height, speed
 
@@ -21,19 +20,12 @@ _DISC: Final = 0.42  # metres, the radius of a disc of 1 kg: all have the same d
 class Slopes(Exhibit):
     """Five boxes on one slope: those slide whose coefficient of friction is less than tan θ."""
 
-    name, patience, width = "slopes", 40, 32.0
+    name, width = "slopes", 32.0
     quantities = (Quantity("degrees", (5.0, 36.0), 30.0, 1.0), Quantity("friction", (0.0, 1.0), 0.5, 0.05))
     size = (1.4, 0.9)
     length = 16.0 / math.cos(math.pi / 6)  # metres along the slope
     foot = 5.0  # its lower end
-    which = 2  # the box whose friction can be changed, and whose acceleration is measured
-    timed = (10, 40)  # steps between which it is measured
-
-    @classmethod
-    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
-        """Return the acceleration down the slope, in m/s²: g (sin θ - μ cos θ), or 0 where friction holds."""
-        slope = math.radians(values["degrees"])
-        return gravity * max(0.0, math.sin(slope) - values["friction"] * math.cos(slope))
+    which = 2  # the box whose friction can be changed
 
     def build(self) -> None:
         """Place the slipperiest box lowest, so that none runs into another."""
@@ -44,26 +36,20 @@ class Slopes(Exhibit):
         middle = np.array([(left + right) / 2, top / 2])
         corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
         self.add(Polygon(corners), middle, "slope", static=True)
-        self.down, away = np.array([math.cos(slope), -math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
+        down, away = np.array([math.cos(slope), -math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
         self.boxes: list[Body] = []
         for number, friction in enumerate(self.frictions):
-            place = np.array([right, 0.0]) - (3.4 + 3.3 * number) * self.down + self.size[1] / 2 * away
+            place = np.array([right, 0.0]) - (3.4 + 3.3 * number) * down + self.size[1] / 2 * away
             image = "bright-box" if number == self.which else "box"
             self.boxes.append(self.add(Polygon.box(*self.size), place, image, angle=-slope, friction=friction))
         self.places = [box.position[0].copy() for box in self.boxes]
         self.slid: set[int] = set()
 
     def observe(self) -> None:
-        """Record the boxes that have slid without the hand's help, by their numbers, and time one of them."""
+        """Record the boxes that have slid without the hand's help, by their numbers."""
         for number, (box, place) in enumerate(zip(self.boxes, self.places, strict=True)):
             if not self.is_touched(box) and np.hypot(*(box.position[0] - place)) > _SLID:
                 self.slid.add(number)
-        box, (first, last) = self.boxes[self.which], self.timed
-        pace = float(box.velocity[0] @ self.down)
-        if self.steps == first:
-            self._pace = pace
-        if self.steps == last and not self.is_touched(box):
-            self.result = (pace - self._pace) / ((last - first) * DT)
 
     def figures(self) -> dict[str, float]:
         degrees = self.values["degrees"]
@@ -87,15 +73,10 @@ class Slopes(Exhibit):
 class Bounce(Exhibit):
     """Five balls dropped from one height h: each bounces back to e² h."""
 
-    name, patience, width, tolerance = "bounce", 420, 22.0, 0.03
+    name, width = "bounce", 22.0
     quantities = (Quantity("restitution", (0.1, 1.0), 0.75, 0.05), Quantity("drop", (1.0, 6.5), 6.0, 0.5))
     radius = 0.4
     which = 3  # the ball that the live line is about, and whose restitution can be changed
-
-    @classmethod
-    def law(cls, gravity: float, values: Mapping[str, float]) -> float:  # noqa: ARG003
-        """Return the height of the first bounce, in metres: e² h."""
-        return values["restitution"] ** 2 * values["drop"]
 
     def build(self) -> None:
         drop = self.values["drop"]
@@ -122,8 +103,6 @@ class Bounce(Exhibit):
         self.bounced |= followed & (bottom <= _TOUCH)
         self.rising = followed & self.bounced & upward
         self.peaks = np.maximum(self.peaks, np.where(self.rising, bottom, 0.0))
-        if self.measured[self.which]:
-            self.result = float(self.peaks[self.which])
 
     @property
     def state(self) -> str:
@@ -153,25 +132,10 @@ class Bounce(Exhibit):
 class DragRace(Exhibit):
     """Discs fall side by side without drag, with linear and with quadratic drag: each has its own terminal speed."""
 
-    name, patience, width, tolerance = "drag", 1200, 40.0, 0.02
+    name, width = "drag", 40.0
     quantities = (Quantity("linear_drag", (0.5, 2.0), 1.0, 0.1), Quantity("mass", (0.5, 2.0), 1.0, 0.1))
     top = 13.0
     which = 1  # the disc that the live line is about, and whose mass can be changed
-
-    @classmethod
-    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
-        """Return the speed at the floor, in m/s, of a disc that has fallen under linear drag.
-
-        A fall from rest reaches a share s of its terminal speed m g / c after the distance (-s - ln(1 - s)) g m² / c²,
-        which rises with s: the share for the height of the fall is found by bisection.
-        """
-        ease = values["linear_drag"] / values["mass"]
-        far = (cls.top - _DISC * math.sqrt(values["mass"])) * ease**2 / gravity
-        low, high = 0.0, 1.0
-        for _ in range(60):
-            share = (low + high) / 2
-            low, high = (share, high) if share < 1 and -share - math.log1p(-share) < far else (low, share)
-        return low * gravity / ease
 
     def build(self) -> None:
         drag = self.values["linear_drag"]
@@ -194,21 +158,20 @@ class DragRace(Exhibit):
             )
             for number, (name, mass, linear, quadratic) in enumerate(self.lanes)
         ]
-        self.followed, self.speed = self.discs[self.which], 0.0
+        self.followed, self.speed, self.landed = self.discs[self.which], 0.0, False
 
     def observe(self) -> None:
         """Follow the light disc with linear drag down to the floor, as long as no hand interferes."""
-        if self.result is not None or self.is_touched(self.followed):
+        if self.landed or self.is_touched(self.followed):
             return
-        if height(self.followed) - _DISC * math.sqrt(self.followed.mass) <= _TOUCH:
-            self.result = self.speed
-        else:
+        self.landed = height(self.followed) - _DISC * math.sqrt(self.followed.mass) <= _TOUCH
+        if not self.landed:
             self.speed = speed(self.followed)
 
     @property
     def state(self) -> str:
         """Phase of the light disc with linear drag."""
-        if self.result is not None:
+        if self.landed:
             return "landed"
         return "touched" if self.is_touched(self.followed) else "falling"
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Final
@@ -23,7 +21,6 @@ from game.input.controls import Command
 from game.scenes.physics.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
 from game.scenes.physics.exhibit import BELOW, CLEAR, Grip
 from game.scenes.physics.exhibits import EXHIBITS
-from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
@@ -38,34 +35,26 @@ SPEEDS: Final = (0.25, 0.5, 1.0)
 _MORE: Final = "physics"  # name in the settings of what stays open
 _LEAST: Final = 300.0  # points of a column
 _REACH: Final = 8.0  # points by which the mouse may miss a body
-_BUDGET: Final = 6e-3  # seconds of a frame for measuring, during which the exhibit waits
 _REST: Final = 6  # steps without a change after which an exhibit of many bodies is made anew
 _MANY: Final = 24
 
 
 class PhysicsScene(PanelScene):
-    """Physics gallery, one exhibit at a time; `now` is the clock in seconds by which a range is measured.
+    """Physics gallery, one exhibit at a time.
 
     Attributes:
         chosen: name of the exhibit.
         values: values of the quantities, by exhibit and name, as far as they have been changed.
-        results: what all runs have measured.
-        plot: law and measurement; None while they are hidden.
-        measuring: the range that is being measured, if any; the exhibit waits meanwhile.
 
     """
 
-    def __init__(self, context: Context, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(self, context: Context, exhibit: str = "stack") -> None:
         super().__init__(context, self._pause)
-        self.chosen, self._now, self._gravity = exhibit, now, 0
+        self.chosen, self._gravity = exhibit, 0
         self._clock = TimeScale()
         self.playback = Playback(self._clock, SPEEDS, self._step)
         self.values: dict[str, dict[str, float]] = {}
-        self._changed: dict[str, str] = {}  # the quantity changed last, by exhibit
         self._waits: int | None = None  # steps until the exhibit is made anew
-        self.results = Results()
-        self.plot: LawPlot | None = None
-        self.measuring: RangeMeasurement | None = None
         self.contacts_drawn = False
         self.grip: Grip | None = None
         self.explained = Explained()
@@ -79,12 +68,10 @@ class PhysicsScene(PanelScene):
 
     def restart(self) -> None:
         self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity], self.values.get(self.chosen))
-        self._waits = self.measuring = self.grip = None
+        self._waits = self.grip = None
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._clock.begin()
-        if self.plot:
-            self.plot = LawPlot(self.exhibit, self._axis, self.results)
 
     def _show(self) -> None:
         self.restart()
@@ -97,59 +84,29 @@ class PhysicsScene(PanelScene):
     def _turn(self, direction: int) -> None:
         self._choose(list(EXHIBITS).index(self.chosen) + direction)
 
-    def reword(self) -> None:
-        if self.plot:
-            self.plot = LawPlot(self.exhibit, self._axis, self.results)
-        self.build()
-
     def _choose_gravity(self, index: int) -> None:
         self._gravity = index
         self._show()
 
-    @property
-    def _axis(self) -> str:
-        """Name of the quantity that the plot goes along: the one that was changed last."""
-        return self._changed.get(self.chosen, self.exhibit.quantities[0].name)
-
     def _change(self, name: str, value: float) -> None:
         self.values.setdefault(self.chosen, {})[name] = value
-        self._changed[self.chosen] = name
         self._waits = _REST if len(self.exhibit.bodies) > _MANY else 0
 
     def _reset(self) -> None:
         self.values.pop(self.chosen, None)
         self._show()
 
-    def toggle_plot(self) -> None:
-        self.measuring = None
-        self.plot = None if self.plot else LawPlot(self.exhibit, self._axis, self.results)
-        self.build()
-
-    def measure(self) -> None:
-        self.measuring = None if self.measuring else RangeMeasurement(self.exhibit, self._axis, self.results)
-        self.build()
-
     def toggle_contacts(self) -> None:
         self.contacts_drawn = not self.contacts_drawn
         self.build()
 
     def update(self) -> Transition | None:
-        for _ in range(0 if self.measuring else self.playback.steps()):
+        for _ in range(self.playback.steps()):
             self._step()
         if self._waits is not None:
             self._waits -= 1
             if self._waits < 0:
                 self.restart()
-        news = self.results.add(self.exhibit)
-        if self.measuring:
-            before, ended = self.measuring.done, self.measuring.advance(self._now, _BUDGET)
-            news = news or self.measuring.done > before
-            if ended:
-                self.measure()
-        if self.plot:
-            if news:
-                self.plot.refresh()
-            self.plot.update()
         self.explained.update()
         return super().update()
 
@@ -164,8 +121,6 @@ class PhysicsScene(PanelScene):
             return None
         if event.type == pygame.WINDOWFOCUSLOST:
             self.grip = None
-        if event.type == pygame.MOUSEMOTION and self.plot:
-            self.plot.hover(event.pos)
         return super().handle_event(event)
 
     def actions(self) -> Table:
@@ -178,7 +133,6 @@ class PhysicsScene(PanelScene):
             replace(self.explained.action(), gamepad=None),  # its button draws the contacts
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
             Action(Command.CHOICES, self.toggle_contacts),
-            Action(Command.MODE, self.toggle_plot),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             *speeds,
         ]
@@ -209,21 +163,16 @@ class PhysicsScene(PanelScene):
             column.slider(label, value, quantity.limits, change, step=quantity.step, figure=shown)
             column.explain(what["slider"])
         words: list[tuple[str, OnPress]] = [
-            (texts.LAW_START_VALUES, self._reset),
-            (texts.LAW_PLOT, self.toggle_plot),
-            (texts.LAW_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
+            (texts.PHYSICS_START_VALUES, self._reset),
+            (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             (texts.PHYSICS_MORE[self.more], self._open_more),
         ]
         buttons = column.words(words)
-        self._button_help = [(buttons[1], what["plot"]), (buttons[2], what["inside"])]
+        self._inside = buttons[1]
         column.gap()
-        if self.plot:
-            self.plot.describe(column, self._progress)
-            column.button(texts.LAW_CANCEL if self.measuring else texts.LAW_MEASURE, self.measure, size=SMALL)
         if not self.more:
             return
-        if not self.exhibit.weightless:
-            column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
+        column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
         self.playback.describe(column)
         column.explain(what["speed"])
         column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
@@ -244,10 +193,6 @@ class PhysicsScene(PanelScene):
     def _said(self) -> str:
         return texts.EXHIBITS[self.chosen][2][self.exhibit.state].format(**self.exhibit.figures())
 
-    def _progress(self) -> str:
-        run = self.measuring
-        return texts.LAW_PROGRESS.format(count=run.done, total=run.count) if run else ""
-
     # The room
 
     def _height(self, width: float) -> float:
@@ -255,8 +200,8 @@ class PhysicsScene(PanelScene):
 
     @property
     def _weight(self) -> float:
-        """Weight of a kilogram, in newtons; the moon's where there is no gravity."""
-        return self.exhibit.gravity or GRAVITIES[0]
+        """Weight of a kilogram, in newtons."""
+        return self.exhibit.gravity
 
     def view(self, scale: float) -> View:
         """Return how the exhibit's metres lie on the canvas."""
@@ -328,8 +273,7 @@ class PhysicsScene(PanelScene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
-        for button, what in self._button_help:
-            canvas.explain(button.box, what)
+        canvas.explain(self._inside.box, texts.EXPLAIN_PHYSICS["inside"])
         self.explained.draw(canvas)
 
 

@@ -1,5 +1,6 @@
-"""Real processes: a file that prints, reads, dies, never answers or talks nonsense harms nobody else."""
+"""Real processes: a file that prints, reads, dies, never answers or has children harms nobody else."""
 
+import os
 import subprocess
 import sys
 import time
@@ -12,17 +13,46 @@ from ai.pilots.process import PilotError, PilotProcess
 
 LONG = 60.0  # seconds: only there so that a failure ends
 OBSERVATION = np.zeros((2, 9), np.float32)
-# The end that answers, found by what it is: standard output itself leads elsewhere by then.
-FORGED = """
-import os, stat
+ORDINARY = """
+import inspect, pickle, sys
+from dataclasses import dataclass
+from multiprocessing import get_context
+
+@dataclass
+class Plan:
+    main: int = 3
+
+def doubled(number):
+    return 2 * number
+
+plan = pickle.loads(pickle.dumps(Plan()))
+assert plan == Plan() and Plan.__dataclass_fields__["main"].type is int
+assert "class Plan" in inspect.getsource(Plan) and "plan.main" in inspect.getsource(sys.modules[__name__])
+assert __spec__.name == __name__ and inspect.getmodule(doubled).__file__ == __file__
+
 def act(observation):
-    for number in range(3, 30):
-        try:
-            if stat.S_ISFIFO(os.fstat(number).st_mode):
-                os.write(number, {bytes!r})
-        except OSError:
-            pass
-    return 0
+    return plan.main
+"""
+RAISES_LATER = """
+import signal
+
+def late(*_):
+    raise KeyError("a signal came")
+
+signal.signal(signal.SIGALRM, late)
+
+def act(observation):
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    return 1
+"""
+FORKED = """
+import os, time
+if os.fork() == 0:
+    open({mark!r}, "w").write(str(os.getpid()))
+    time.sleep(600)
+
+def act(observation):
+    os._exit(3)
 """
 
 
@@ -30,8 +60,9 @@ def act(observation):
 def started(tmp_path: Path):
     processes = []
 
-    def start(source: str) -> PilotProcess:
-        processes.append(PilotProcess(tmp_path / "pilot.py", source))
+    def start(source: str, name: str = "pilot.py") -> PilotProcess:
+        (tmp_path / name).write_text(source)
+        processes.append(PilotProcess(tmp_path / name, source))
         return processes[-1]
 
     yield start
@@ -50,6 +81,20 @@ def test_a_file_that_prints_and_reads_answers_all_the_same(started):
         process.act(OBSERVATION, LONG)
 
 
+def test_a_file_is_an_ordinary_module_whatever_its_name(started):
+    for name in ("pilot.py", "my pilot.py", "numpy.py", "queue.py", "números.py"):
+        process = started(ORDINARY, name)
+        assert process.act(OBSERVATION, LONG).tolist() == [3, 3], name
+
+
+def test_a_file_may_have_processes_of_its_own(started):
+    process = started(
+        "from multiprocessing import get_context\nimport math\n"
+        "def act(o):\n    with get_context('spawn').Pool(1) as pool: return pool.map(math.floor, [2.5])[0]"
+    )
+    assert process.act(OBSERVATION[:1], LONG).tolist() == [2]
+
+
 def test_a_file_that_raises_goes_on_answering(started):
     process = started("n = 0\ndef act(o):\n    global n\n    n += 1\n    return 6 / (n - 1)")
     with pytest.raises(PilotError, match=r"^line 5: ZeroDivisionError"):
@@ -59,11 +104,40 @@ def test_a_file_that_raises_goes_on_answering(started):
     assert not process.gone
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no such signals")
+def test_what_a_signal_raises_between_two_decisions_is_said_at_the_next(started):
+    process = started(RAISES_LATER)
+    for _ in range(2):
+        assert process.act(OBSERVATION[:1], LONG).tolist() == [1]
+        time.sleep(0.3)
+        with pytest.raises(PilotError, match=r"^line 5: KeyError: 'a signal came'"):
+            process.act(OBSERVATION[:1], LONG)
+
+
 def test_a_file_that_ends_its_process_is_reported(started):
     process = started("import os; os._exit(0)")
     with pytest.raises(PilotError, match="ended"):
         process.ready(LONG)
     assert process.gone
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no such processes")
+def test_a_child_of_its_own_keeps_nobody_waiting_and_ends_with_it(started, tmp_path):
+    mark = tmp_path / "mark"
+    process = started(FORKED.format(mark=str(mark)))
+    assert process.ready(LONG)
+    with pytest.raises(PilotError, match="its process has ended"):
+        process.act(OBSERVATION, LONG)
+    while not (number := mark.exists() and mark.read_text()):
+        time.sleep(0.01)
+    wait_for_the_end_of(int(number))
+
+
+def wait_for_the_end_of(number: int) -> None:
+    end = time.monotonic() + LONG
+    while (stat := Path(f"/proc/{number}/stat")).exists() and ") Z " not in stat.read_text():
+        assert time.monotonic() < end
+        time.sleep(0.05)
 
 
 def test_an_endless_loop_is_late_and_ends_with_the_process(started):
@@ -76,6 +150,13 @@ def test_an_endless_loop_is_late_and_ends_with_the_process(started):
     assert process.gone
 
 
+def test_an_answer_that_came_too_late_is_never_that_of_another_question(started):
+    process = started("import time\ndef act(o):\n    time.sleep(float(o[1]))\n    return int(o[0])")
+    assert process.ready(LONG)
+    assert process.act(np.array([[4, 0.3, *[0] * 7]]), 0.01) is None
+    assert process.act(np.array([[5, 0.0, *[0] * 7]]), LONG).tolist() == [5]
+
+
 def test_one_that_answers_nothing_more_is_ended_all_the_same(started):
     process = started("import os, signal\ndef act(o):\n    os.kill(os.getpid(), signal.SIGSTOP)")
     assert process.ready(LONG)
@@ -84,32 +165,22 @@ def test_one_that_answers_nothing_more_is_ended_all_the_same(started):
     assert process.gone
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes are found by their kind")
-def test_forged_answers_are_refused(started):
-    for forged in (b"\2\0\0\0a\x09", b"\3\0\0\0a\1\1", b"\1\0\0\0x", b"\xff\xff\xff\xff"):
-        process = started(FORGED.format(bytes=forged))
-        assert process.ready(LONG)
-        with pytest.raises(PilotError):
-            process.act(OBSERVATION[:1], LONG)
-
-
 @pytest.mark.slow
-def test_it_ends_with_whoever_started_it(tmp_path: Path):
-    code = f"""
-import time
+def test_it_ends_with_whoever_started_it_however_that_ends(tmp_path: Path):
+    for end in ("time.sleep(60)", "sys.exit()"):
+        code = f"""
+import sys, time
 from pathlib import Path
 from ai.pilots.process import PilotProcess
 process = PilotProcess(Path({str(tmp_path / "pilot.py")!r}), "while True: pass")
 print(process._process.pid, flush=True)
-time.sleep(60)
+{end}
 """
-    parent = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
-    assert parent.stdout
-    with parent.stdout:
-        number = int(parent.stdout.readline())
-        parent.kill()
-        parent.wait()
-    end = time.monotonic() + LONG
-    while Path(f"/proc/{number}").exists():
-        assert time.monotonic() < end
-        time.sleep(0.05)
+        parent = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        assert parent.stdout
+        with parent.stdout:
+            number = int(parent.stdout.readline())
+            if "sleep" in end:
+                parent.kill()
+            parent.wait(LONG)
+        wait_for_the_end_of(number)

@@ -64,8 +64,10 @@ def test_finished_and_damaged_trials_are_not_run_again(tmp_path, workers):
 
 
 def test_a_lost_worker_begins_its_trial_again_and_is_given_up_after_some_tries(tmp_path, workers):
+    from ray.exceptions import RayError
+
     def die(number, params):
-        raise driver.RayError("it died")
+        raise RayError("it died")
 
     workers.does = die
     study = Study.create(tmp_path / "study", tiny_plan(trials=1))
@@ -74,8 +76,10 @@ def test_a_lost_worker_begins_its_trial_again_and_is_given_up_after_some_tries(t
 
 
 def test_what_a_node_lacks_is_named_and_not_tried_for_ever(tmp_path, workers):
+    from ray.exceptions import RayTaskError
+
     def miss(number, params):
-        raise driver.RayTaskError("trained", "", ImportError("gymnasium is missing"))
+        raise RayTaskError("trained", "", ImportError("gymnasium is missing"))
 
     workers.does = miss
     study = Study.create(tmp_path / "study", tiny_plan(trials=50))

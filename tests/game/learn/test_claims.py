@@ -1,4 +1,4 @@
-"""What chapters 7 to 9 claim, on the real runs that they show; `benchmarks.small_runs` prints more seeds of them."""
+"""What chapters 6 to 9 claim, on the real runs that they show; `benchmarks.small_runs` prints more seeds of them."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from ai.training.small_run import SMALL_RUN, Plan, SmallRun
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.learn import pay
+from game.scenes.learn.choice import MOMENTS
 from game.scenes.learn.memory import LATEST, MemoryChapter
-from game.scenes.learn.moment import MOMENTS
 from game.scenes.learn.pay import PAYS
 from game.scenes.learn.runs import BOUND, DARING, NORMALISED, PAY, DaringChapter, TargetChapter, config_of
 from game.ui.context import Context

@@ -1,4 +1,4 @@
-"""The path: its list, the four pages of a chapter, progress, and every way to move through it."""
+"""The path: its list, the three pages of a chapter, progress, and every way to move through it."""
 
 import re
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from game.core.settings import Settings
 from game.scenes.learn import scene as chapter_scene
 from game.scenes.learn.list import LearnScene
 from game.scenes.learn.path import PATH, Progress, following
-from game.scenes.learn.scene import CODE, PREDICT, TRY, WHY, ChapterScene
+from game.scenes.learn.scene import PREDICT, TRY, WHY, ChapterScene
 from game.ui.context import Context
 from game.ui.rows import ButtonRow, ChoiceRow
 from tests.support.driver import Driver
@@ -57,8 +57,8 @@ def test_a_chapter_is_gone_through_in_two_languages_and_leads_on(
     save_settings(context)
     driver = open_game(ChapterScene, key)
     scene = driver.top
-    begin = {"neuron": "hint", "moment": "go"}
-    for page, label in enumerate((texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], texts.LEARN_ON[WHY], "")):
+    begin = {"neuron": "hint"}
+    for page, label in enumerate((texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], "")):
         assert scene.page == page
         if page == TRY and key in begin:
             getattr(scene.chapter, begin[key])()
@@ -66,7 +66,7 @@ def test_a_chapter_is_gone_through_in_two_languages_and_leads_on(
         said = written(driver, monkeypatch)
         assert page > TRY or not scene.panel.overflows
         assert not re.findall(r"(?<![\w.])-\d", said), "a hyphen stands for a minus"
-        if page in (PREDICT, CODE):
+        if page == PREDICT:
             question = texts.LEARN[key]["question"]
             with driver.speaking("de"):
                 assert question not in written(driver, monkeypatch)
@@ -76,12 +76,12 @@ def test_a_chapter_is_gone_through_in_two_languages_and_leads_on(
     assert (texts.LEARN_NEXT_CHAPTER in driver.hints()) == (following(key) is not None)
     driver.key(pygame.K_b)
     driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-    assert scene.page == CODE
+    assert scene.page == WHY
     driver.press_on(scene.chapter.words["door"])
     driver.frames(2)
     assert driver.top_name not in ("ChapterScene", "ErrorScene")
     driver = open_game(ChapterScene, key)
-    driver.top.turn_to(CODE)
+    driver.top.turn_to(WHY)
     driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
     driver.frames(2)
     assert driver.top.key == (following(key) or key)
@@ -102,7 +102,7 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     driver.press_on(texts.LEARN_ON[TRY])
     assert progress.done("neuron")
     assert driver.saved()["learnt"]["neuron"]["done"] is True
-    assert driver.top.form.focused.label == texts.LEARN_ON[WHY], "on to the code, before the way out"
+    assert driver.top.form.focused.label == texts.LEARN_TO_CHAPTER
     said, answers = written(driver, monkeypatch), texts.LEARN_ANSWERS["neuron"]
     for part in (texts.LEARN_YOU_SAID, answers[0], texts.LEARN_CAME[False], answers[2]):
         assert part in said
@@ -130,6 +130,37 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     assert shown not in written(driver, monkeypatch), "but not in another language"
 
 
+@pytest.mark.parametrize("key", KEYS)
+def test_the_line_that_did_it_is_shown_in_place_of_the_picture_where_it_has_numbers(
+    open_game: Open, context: Context, key: str, monkeypatch
+):
+    save_settings(context)
+    driver = open_game(ChapterScene, key)
+    scene = driver.top
+    scene.turn_to(WHY)
+    driver.frames(2)
+    words = [each.label for each in driver.form.widgets if isinstance(each, ButtonRow)]
+    code = scene.chapter.code()
+    assert (texts.LEARN_CODE[False] in words) == (code is not None)
+    if code is None:
+        return
+    scene.in_code = True
+    scene.reword()
+    assert code.function.__name__ in written(driver, monkeypatch)
+    driver.press_on(texts.LEARN_CODE[True])
+    assert not scene.in_code
+
+
+def test_the_list_opens_on_the_first_chapter_that_is_not_done(open_game: Open, context: Context):
+    done = {"done": True}
+    save_settings(context, learnt={KEYS[0]: done, KEYS[1]: done, KEYS[3]: done}, chapter=KEYS[3])
+    assert open_game(LearnScene).top.chosen == KEYS[2]
+    save_settings(context, learnt={KEYS[0]: done}, chapter=KEYS[4])
+    assert open_game(LearnScene).top.chosen == KEYS[4], "it was begun"
+    save_settings(context, learnt=dict.fromkeys(KEYS, done), chapter=KEYS[2])
+    assert open_game(LearnScene).top.chosen == KEYS[0]
+
+
 def test_a_button_is_chosen_and_what_has_a_value_is_changed(open_game: Open, context: Context):
     save_settings(context)
     form = open_game(ChapterScene, "neuron").top.form
@@ -147,9 +178,13 @@ def test_a_chapter_is_not_done_before_its_question_is_answered(open_game: Open, 
         with monkeypatch.context() as patch:
             patch.setattr(type(scene.chapter), "why", lambda _: "shown")
             patch.setattr(type(scene.chapter), "verdict", lambda _: None)
-            scene.chapter.tried, scene.chapter.complete = True, True
+            scene.chapter.tried = True
             scene.turn_to(WHY)
-            assert progress.done(key) == (key == "own"), "only a list of steps is done when all of them are"
+            assert not progress.done(key)
+            assert texts.LEARN_UNSETTLED not in written(driver, monkeypatch), "nothing was said"
+            progress.note(key, guess=0)
+            scene.reword()
+            assert (texts.LEARN_UNSETTLED in written(driver, monkeypatch)) == (key in texts.LEARN_UNDECIDED)
             patch.setattr(type(scene.chapter), "verdict", lambda _: 1)
             scene.turn_to(WHY)
             assert progress.done(key)
@@ -161,11 +196,17 @@ def test_a_chapter_is_not_done_before_its_question_is_answered(open_game: Open, 
 
 def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_said(open_game: Open, context: Context, monkeypatch):
     save_settings(context)
-    for key, begin, end in (("moment", texts.LEARN_MOMENT_GO, 500), ("pay", texts.LEARN_PAY_TRAIN, 0)):
+    for key, begin, end in (("choice", "", 500), ("pay", texts.LEARN_PAY_TRAIN, 0)):
         driver = open_game(ChapterScene, key)
         scene, progress = driver.top, Progress(driver.app.context.settings)
         scene.turn_to(TRY)
-        driver.press_on(begin)
+        if begin:
+            driver.press_on(begin)
+        else:  # the second of two flights, which settle the question
+            best, worst = scene.chapter.best, scene.chapter.worst
+            scene.chapter.begin_with(worst)
+            driver.skip(end)
+            scene.chapter.begin_with(best)
         scene.turn_to(WHY)
         assert texts.LEARN_STILL_RUNS in written(driver, monkeypatch), "not that it is to be tried first"
         assert not progress.done(key)
@@ -175,19 +216,6 @@ def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_said(open_game:
             assert scene.chapter.why().split()[0] in written(driver, monkeypatch)
         driver.app.close()
         assert not scene.chapter.running or end, "leaving a chapter ends its run"
-
-
-def test_a_chapter_of_steps_is_done_when_all_of_them_are(open_game: Open, context: Context):
-    save_settings(context, learnt={"own": {"done": True}})
-    driver = open_game(ChapterScene, "own")
-    progress, chapter = Progress(driver.app.context.settings), driver.top.chapter
-    assert not progress.done("own"), "it says 0 of 6"
-    chapter.tried = True
-    driver.top.turn_to(WHY)
-    assert not progress.done("own")
-    chapter.complete = True
-    driver.top.turn_to(WHY)
-    assert progress.done("own")
 
 
 def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):
@@ -204,9 +232,9 @@ def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game:
     assert isinstance(driver.top, ChapterScene)
     driver.key(pygame.K_RETURN)
     assert progress.guess("neuron") == 0
-    before = {"neuron": {"guess": 1, "page": 3, "done": True}, "moment": {"page": 2}}  # as it was noted once
+    before = {"neuron": {"guess": 1, "page": 3, "done": True}, "plane": {"page": 2}}  # as it was noted once
     progress = Progress(Settings.from_dict({"learnt": before}))
-    assert [progress.state(key) for key in ("neuron", "moment", "own")] == [2, 1, 0]
+    assert [progress.state(key) for key in ("neuron", "plane", "daring")] == [2, 1, 0]
     assert progress.guess("neuron") == 1
     beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
     assert (beyond.guess("neuron"), beyond.answer("neuron")) == (None, ""), "it has three answers"
@@ -225,11 +253,12 @@ def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
         with monkeypatch.context() as patch:
             patch.setattr(context, missing, tmp_path)
             driver = open_game(ChapterScene, key)
-            for page in (TRY, WHY, CODE, TRY):
+            for page in (TRY, WHY, TRY):
                 driver.top.turn_to(page)
                 assert driver.top.chapter.problem.split()[0] in written(driver, monkeypatch)
                 driver.key(pygame.K_r)
     monkeypatch.setattr(chapter_scene, "source_of", lambda _: None)
     driver = open_game(ChapterScene, "neuron")
-    driver.top.turn_to(CODE)
+    driver.top.turn_to(WHY)
+    driver.press_on(texts.LEARN_CODE[False])
     assert texts.LESSON_NO_SOURCE in written(driver, monkeypatch)

@@ -10,7 +10,7 @@ import pytest
 
 from game.core import texts
 from game.scenes.physics.exhibit import Exhibit, Grip
-from game.scenes.physics.exhibits import EXHIBITS, Heap, Impacts, Spin, Stack
+from game.scenes.physics.exhibits import EXHIBITS, Heap, Impacts, Stack
 from game.scenes.physics.falls import Bounce, DragRace, Slopes
 from game.scenes.physics.scene import GRAVITIES
 
@@ -80,6 +80,16 @@ def test_every_exhibit_keeps_within_its_room_and_says_each_of_its_sentences(name
     if name == "stack":
         states.add("fallen")  # has a test of its own
     assert states == set(texts.EXHIBITS[name][2])
+
+
+def test_every_quantity_has_words_and_begins_at_a_value_that_can_be_chosen():
+    assert texts.EXHIBITS.keys() == EXHIBITS.keys()
+    assert texts.QUANTITIES.keys() == {each.name for kind in EXHIBITS.values() for each in kind.quantities}
+    for each in (quantity for kind in EXHIBITS.values() for quantity in kind.quantities):
+        low, high = each.limits
+        steps = (np.array([high, each.start]) - low) / each.step
+        assert steps == pytest.approx(np.rint(steps), abs=1e-6), each.name
+        assert low <= each.start <= high
 
 
 # Many bodies
@@ -236,19 +246,3 @@ def test_a_disc_is_said_to_fall_only_while_it_does():
     hold(caught, caught.discs[1], (0.0, 13.0))
     for _ in life(caught, 5.0):
         assert "Your hand moved" in said(caught)
-
-
-def test_spin_is_kept_and_bars_turn_by_a_push_beside_their_middle_unless_a_hand_was_there_first():
-    spin = Spin(MOON)
-    for _ in life(spin, 2.0):
-        before = spin.steps <= spin.push_at
-        assert all(word.startswith("to be pushed" if before else "pushed") for word in words(spin)[-2:])
-    assert spin.angular_momenta() == pytest.approx([spin.momentum] * 3, rel=1e-6)
-    for bar, turning in zip(spin.bars, (0.0, -spin.figures()["spin"]), strict=True):
-        assert bar.velocity[0] == pytest.approx((spin.figures()["pace"], 0.0), abs=1e-9)
-        assert float(bar.angular_velocity[0]) == pytest.approx(turning)
-    taken = Spin(MOON)
-    hold(taken, taken.bars[1], (8.0, 8.0), steps=20)
-    run(taken, 1.0)
-    assert words(taken)[-2].startswith("pushed in the middle: 0.40 m/s")
-    assert "pushed" not in words(taken)[-1]

@@ -1,4 +1,4 @@
-"""The gallery: exhibits, sliders and plot by mouse, keyboard and gamepad; and the screen of one step."""
+"""The gallery: exhibits and sliders by mouse, keyboard and gamepad; and the screen of one step."""
 
 import argparse
 from collections.abc import Callable
@@ -81,23 +81,21 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
         assert scene(gallery).chosen == names[number]
 
 
-def test_gravity_is_chosen_and_is_offered_only_where_there_is_any(gallery: Driver):
+def test_gravity_is_chosen(gallery: Driver):
     first = scene(gallery).exhibit
     gallery.choice(texts.PHYSICS_GRAVITIES[0]).choose(1)
     assert scene(gallery).exhibit is not first
     assert scene(gallery).exhibit.world.gravity.tolist() == [0.0, -EARTH]
-    for _ in EXHIBITS:
-        gallery.key(pygame.K_n)
-        offered = [each for each in gallery.form.widgets if texts.PHYSICS_GRAVITIES[0] in getattr(each, "options", ())]
-        assert bool(offered) is not scene(gallery).exhibit.weightless
+    gallery.key(pygame.K_n)
+    assert scene(gallery).exhibit.world.gravity.tolist() == [0.0, -EARTH]
 
 
 # A hand
 
 
 def test_the_mouse_takes_hold_pulls_and_lets_go(open_game: Open):
-    driver = open_game(PhysicsScene, "spin")
-    disc = scene(driver).exhibit.turning[0]
+    driver = open_game(PhysicsScene, "stack")
+    disc = scene(driver).exhibit.ball
     start = seen(driver, disc)
     press(driver, pygame.MOUSEBUTTONDOWN, start)
     target = (start[0] + 40, start[1] - 100)
@@ -230,7 +228,7 @@ def test_a_quantity_is_changed_without_a_mouse_stays_and_is_put_back(open_game: 
     player.keys(pygame.K_n, pygame.K_b)  # to another exhibit and back
     assert scene(player).exhibit.values["restitution"] == slider(player, "restitution").value == pytest.approx(0.7)
     assert "e = 0.70" in texts.EXHIBITS["bounce"][2]["falling"].format(**scene(player).exhibit.figures())
-    player.choose(texts.LAW_START_VALUES)
+    player.choose(texts.PHYSICS_START_VALUES)
     assert scene(player).exhibit.values["restitution"] == slider(player, "restitution").value == 0.75
 
 
@@ -245,56 +243,6 @@ def test_an_exhibit_of_many_bodies_waits_until_the_slider_rests(open_game: Open)
     assert len(scene(driver).exhibit.bodies) == 40
 
 
-# The plot
-
-
-def test_a_run_adds_its_point_to_the_plot(open_game: Open):
-    driver = open_game(PhysicsScene, "spin")
-    driver.key(pygame.K_g)
-    assert scene(driver).plot.points == []
-    driver.frames(40)
-    [(value, result)] = scene(driver).plot.points
-    assert (value, result) == (1.2, pytest.approx(scene(driver).plot.law))
-    assert shows(driver, HUMAN, scene(driver).plot._chart.plot.inflate(8, 8)) > 15
-    slider(driver, "impulse").set(0.8)  # the plot turns to the quantity changed last
-    driver.frames(40)
-    assert scene(driver).plot.name == "impulse"
-    assert [value for value, _ in scene(driver).plot.points] == [0.4, 0.8]
-    driver.key(pygame.K_g)
-    assert scene(driver).plot is None
-
-
-def test_the_plot_follows_the_language_and_the_size_of_text(gallery: Driver, monkeypatch: pytest.MonkeyPatch):
-    gallery.key(pygame.K_g)
-    words = words_written(monkeypatch)
-    with gallery.speaking("de"):
-        words.clear()
-        gallery.frames(1)
-        assert scene(gallery).plot._what == texts.LAWS[scene(gallery).exhibit.name][0]
-        assert {texts.LAW_STEP, texts.EXHIBITS["heap"][0]} <= set(words)
-    before = scene(gallery).plot._chart.box.size
-    gallery.write_in("largest")
-    gallery.frames(2)
-    assert scene(gallery).plot._chart.box.size != before
-
-
-def test_the_whole_range_is_measured_while_the_exhibit_waits_and_that_can_be_stopped(open_game: Open):
-    driver = open_game(PhysicsScene, "spin")
-    click(driver, texts.LAW_PLOT)
-    click(driver, texts.LAW_MEASURE)
-    before = scene(driver).exhibit.steps
-    driver.wait(lambda: scene(driver).measuring is None)
-    assert scene(driver).exhibit.steps <= before + 2
-    assert len(scene(driver).plot.points) == 9
-    driver.keys(*[pygame.K_n] * 2)  # to columns, which take longer
-    click(driver, texts.LAW_MEASURE)
-    click(driver, texts.LAW_CANCEL)
-    assert scene(driver).measuring is None
-    steps = scene(driver).exhibit.steps
-    driver.frames(5)
-    assert scene(driver).exhibit.steps > steps
-
-
 # One step
 
 
@@ -303,7 +251,7 @@ def test_the_step_is_opened_from_the_gallery_and_left_again(gallery: Driver):
     gallery.key(pygame.K_SPACE)
     below = scene(gallery)
     poses = below.exhibit.poses
-    click(gallery, texts.LAW_STEP)
+    click(gallery, texts.PHYSICS_STEP)
     record = gallery.top.record
     gallery.key(pygame.K_ESCAPE)
     assert gallery.top is below

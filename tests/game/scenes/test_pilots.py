@@ -54,7 +54,7 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
     pilot = watch.network.policy
     assert isinstance(pilot, OwnPilot)
     pilot._patience = 60.0
-    assert watch.decision.action[0] == 4
+    watching.wait(lambda: watch.decision.action[0] == 4)
     assert texts.WATCH_OWN.format(name="pilot.py") == watch._said
     assert context.settings.model != "pilot.py"  # the next game asks again
     path.write_text("def act(o):\n    return 1 / 0 if o[1] < 99 else 0")

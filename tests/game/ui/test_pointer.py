@@ -57,9 +57,9 @@ def bring(player: Player, place: tuple[float, float]) -> None:
 
 
 def test_a_body_is_gripped_lifted_and_let_go(take: Take):
-    player = take(PhysicsScene, "spin")
+    player = take(PhysicsScene, "stack")
     scene = player.top
-    disc = scene.exhibit.turning[0]
+    disc = scene.exhibit.ball
 
     def seen() -> tuple[float, float]:
         x, y = scene.view(1.0).points(disc.position[0]).tolist()
@@ -85,9 +85,9 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
 
 @pytest.mark.parametrize("take", ["keys"], indirect=True)
 def test_who_looks_elsewhere_lets_go(take: Take):
-    player = take(PhysicsScene, "spin")
+    player = take(PhysicsScene, "stack")
     scene = player.top
-    bring(player, tuple(scene.view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
+    bring(player, tuple(scene.view(1.0).points(scene.exhibit.ball.position[0]).tolist()))
     player.hold("confirm", down=True)
     assert scene.grip is not None
     player.hold("confirm", down=False)

@@ -1,0 +1,199 @@
+"""Chapter 6, six values and what came: a frozen moment, an action to begin with, and the network flies on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+import numpy as np
+import pygame
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.decision import Decision
+from ai.environment import Floats
+from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
+from ai.training.config import Config
+from game.core import texts
+from game.core.catalogue import capital
+from game.core.scene import Route
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL
+from game.explain.figures import points
+from game.explain.tables import Line, from_zero, table
+from game.flight import networks
+from game.flight.flight import DECISION_STEPS
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
+
+# Moments of flights of the shipped network: seed, kind of start, and decisions flown before.
+MOMENTS: Final = (
+    (1, "random", 0),
+    (4, "random", 60),
+    (9, "hard", 0),
+    (2, "random", 25),
+    (3, "hard", 50),
+    (8, "random", 5),
+)
+_METRES, _BELOW, _ABOVE = 52.0, 1.2, 2.0  # metres: across the picture at least, below the ground, above the lander
+_BAR, _ROOM = 50.0, 1.5  # the scale of the six values: in steps of so many points, so many times the largest
+_ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
+
+
+class Came(NamedTuple):
+    """What came of one flight: the pay in points, later pay counted less, and whether it landed."""
+
+    points: float
+    landed: bool
+
+
+class ChoiceChapter(Chapter):
+    """A frozen moment; the player chooses its first action, and the shipped network flies on, paid as in training.
+
+    Attributes:
+        values: the network's values at the moment, in points, one an action.
+        first: the action that was chosen; None before.
+        came: pay since the moment, later pay counted less.
+        results: what came of each action that was tried from this moment.
+
+    """
+
+    key, door, shape = "choice", Route("watch"), 0.3
+    first: int | None = None
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        network = networks.load(networks.DEFAULT, context.models_dir / networks.LANDER / networks.DEFAULT)
+        self.results: dict[int, Came] = {}
+        if isinstance(network.policy, DeepQAgent):
+            self.agent = network.policy
+            self.restart()
+        else:
+            self.problem = network.problem
+
+    def restart(self) -> None:
+        self._number = -1
+        self.turn()
+
+    def turn(self) -> None:
+        """Go to the next moment."""
+        self._number = (self._number + 1) % len(MOMENTS)
+        self.tried, self.changed = False, True
+        self.results.clear()
+        self._freeze()
+
+    def _freeze(self) -> None:
+        """Fly to the moment, and stop there."""
+        self.first, self.came, self._steps = None, 0.0, 0
+        seed, spawn, decisions = MOMENTS[self._number]
+        self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=Config.of(self.agent).reward_weights)
+        self.env.reset()
+        for step in range(DECISION_STEPS * decisions):
+            if step % DECISION_STEPS == 0:
+                self._decide()
+            self.env.step(self.decision.action)
+        self._decide()
+        assert self.decision.points is not None
+        self.values: Floats = self.decision.points[0].copy()
+        self.best, self.worst = int(self.values.argmax()), int(self.values.argmin())
+        self._lander, self._path = DrawnLander(self.env), [self.env.position[0].copy()]
+
+    def _decide(self) -> None:
+        self.decision: Decision = self.agent.decide(self.env.observe(), held=self.env.actions)
+
+    @property
+    def over(self) -> bool:
+        """Whether the flight from this moment has ended."""
+        return self.first is not None and self.env.outcome[0] != Outcome.FLYING
+
+    @property
+    def running(self) -> bool:
+        return self.first is not None and not self.over
+
+    def controls(self, column: Column) -> None:
+        for action, name in enumerate(ACTION_NAMES):
+            colour, press = NET if action == self.best else INK, partial(self.begin_with, action)
+            column.button(capital(texts.said(name)), press, size=SMALL + 1, colour=colour)
+        column.button(texts.LEARN_CHOICE_NEXT, self.turn)
+
+    def begin_with(self, action: int) -> None:
+        """Go back to the moment, and let the flight begin with an action for one decision."""
+        self._freeze()
+        self.first, self.decision = action, replace(self.decision, action=np.array([action]))
+        self.changed = True
+
+    def update(self) -> None:
+        if self.first is None or not self.running:
+            return
+        if self._steps % DECISION_STEPS == 0 and self._steps:
+            self._decide()
+        pay = float(self.env.step(self.decision.action).reward[0])
+        self.came += self.agent.config.discount ** (self._steps // DECISION_STEPS) * pay
+        self._steps += 1
+        self._lander.follow()
+        if self._steps % DECISION_STEPS == 0:
+            self._path.append(self.env.position[0].copy())
+        if self.over:
+            self.results[self.first] = Came(self.came, bool(self.env.outcome[0] == Outcome.LANDED))
+            self.tried, self.changed = len(self.results) > 1, True
+
+    def verdict(self) -> int | None:
+        """Return what came of the lowest value; None before it and the highest were flown, and where that was lost."""
+        best, worst = self.results.get(self.best), self.results.get(self.worst)
+        if best is None or worst is None or not best.landed:
+            return None
+        return 0 if not worst.landed else 1 if best.points - worst.points <= _ALIKE else 2
+
+    def why(self) -> str:
+        sentences = " ".join(
+            texts.LEARN_CHOICE_WHY[came.landed].format(
+                action=texts.said(ACTION_NAMES[action]),
+                value=points(float(self.values[action]), 1),
+                came=points(came.points, 1),
+            )
+            for action, came in self.results.items()
+        )
+        best = self.results.get(self.best)
+        surprises = best is not None and best.points < max(came.points for came in self.results.values())
+        return f"{sentences} {texts.LEARN_CHOICE_SURPRISE}" if surprises else sentences
+
+    def below(self, column: Column) -> None:
+        column.add(table(("", *texts.LEARN_CHOICE_HEAD), self._lines))
+
+    def _lines(self) -> Sequence[Line]:
+        """Return each action with its value, and what came of it; bars begin at 0, on one scale for the moment."""
+        came = {action: each.points for action, each in self.results.items()}
+        shown = [*self.values.tolist(), *came.values()]
+        high, lines = _BAR * math.ceil(_ROOM * max(float(np.abs(self.values).max()), 1.0) / _BAR), list[Line]()
+        low = -high if min(shown) < 0 else 0.0
+        for action, value in enumerate(self.values.tolist()):
+            brought = points(came[action], 1) if action in came else ""
+            bars = [from_zero(each, low, high) for each in (value, came.get(action, 0.0))]
+            cells = (texts.said(ACTION_NAMES[action]), points(value, 1), brought)
+            lines.append(Line(cells, lit=action == self.best, bars=bars))
+        return lines
+
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        foot = PARAMS.ground - _BELOW
+        high = max(_METRES * box.height / box.width, max(y for _, y in self._path) + _ABOVE - foot)
+        view = view_in(box, (0.0, foot + high / 2), high * box.width / box.height, canvas.scale)
+        with inside(canvas, box):
+            draw_ground(canvas, box, view)
+            for a, b in pairwise(view.points(self._path).tolist()):
+                canvas.line(a, b, mix(NIGHT1, NET, 0.6), 1.5)
+            self._lander.draw(canvas, view, alpha if self.running else 1.0)
+            if self.first is None:
+                start = self.env.position[0]
+                a, b = view.points([start, start + self.env.velocity[0]]).tolist()
+                canvas.line(a, b, HUMAN, 2)
+        number = texts.LEARN_CHOICE_NUMBER.format(number=self._number + 1, count=len(MOMENTS))
+        landed = "landed" if self.over and self.env.outcome[0] == Outcome.LANDED else "lost"
+        end = texts.LEARN_CHOICE_ENDS["still" if self.first is None else landed if self.over else "flying"]
+        canvas.text(number, (box.left, box.top + 14), size=SMALL, colour=MUTE)
+        canvas.text(end, (box.right, box.top + 14), size=SMALL, colour=MUTE, align="right")
