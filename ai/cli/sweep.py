@@ -107,8 +107,7 @@ def _place(arguments: argparse.Namespace) -> Path:
         return Path(name)
     if name in (".", ".."):
         raise ValueError(f"--study takes a name, or the path of a folder, such as {name}/first")
-    folder: Path = arguments.user_dir or user_dir()
-    return folder / STUDIES / name
+    return Path(arguments.user_dir or user_dir(), STUDIES, name)
 
 
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:

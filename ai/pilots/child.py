@@ -11,6 +11,7 @@ import importlib.util
 import inspect
 import linecache
 import os
+import signal
 import sys
 import traceback
 from collections.abc import Callable
@@ -60,6 +61,8 @@ def _stand_alone(path: str) -> None:
     """Leave the terminal's Ctrl-C to whoever started this; what the file prints goes to standard error."""
     if hasattr(os, "setsid"):
         os.setsid()
+    else:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         os.dup2(2, 1)
     except OSError:  # an app without a terminal

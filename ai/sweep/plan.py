@@ -190,7 +190,7 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
         if asked is not None and not (isinstance(asked, Mapping) and set(asked) <= set(own)):
             raise ValueError(f"{name}: a range is low, high and log, or a list of choices")
         try:
-            dimension = read_as(Dimension, own | {"whole": kind == "int"} | (asked or {}))
+            dimension = read_as(Dimension, own | {"whole": kind == "int"} | dict(asked or {}))
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
     if dimension.whole and (dimension.low % 1 or dimension.high % 1):
