@@ -27,18 +27,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.network import build_network
-from ai.explain.inspection import NetworkHealth
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES
 from ai.training.history import Point
 from ai.training.lander_session import LanderSession
-from ai.training.messages import NetworkState
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
-    "crashed", "out_of_bounds", "timed_out", "dead_share", "clipped_share",
+    "crashed", "out_of_bounds", "timed_out",
 )  # fmt: skip
 MANY, ALONE = 2_500.0, 150.0  # decisions a second of many landers, and of one
 SHORT: Final = {"modern": 30_000, "classic": 3_000}  # decisions of a run
@@ -121,8 +117,7 @@ def cases() -> Iterator[tuple[str, Case]]:
 
 def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
     """Run a case; return its points, (n, len(COLUMNS)), and what is to be known of it."""
-    config, health = case.config, NetworkHealth()
-    network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
+    config = case.config
     rows: list[list[float]] = []
     turns = sorted(case.turns.items())
     done: list[tuple[int, str, Any]] = []
@@ -134,14 +129,9 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
         messages = next(going)
         while taken < case.decisions and time.process_time() - began < PATIENCE:
             for message in messages:
-                if isinstance(message, NetworkState):
-                    network.values = message.values
-                    network.gradients[:] = message.gradients
-                    health.look(network, message.observation, config.gradient_clip)
-                elif isinstance(message, Point):
+                if isinstance(message, Point):
                     taken = int(message.decisions)
-                    shares = [np.nan if share is None else share for share in (health.dead_share, health.clipped_share)]
-                    rows.append([*(getattr(message, name) for name in COLUMNS[:-2]), *shares])
+                    rows.append([getattr(message, name) for name in COLUMNS])
             if turns and taken >= turns[0][0]:
                 for name, value in turns.pop(0)[1].items():
                     going.send(("change", name, value))
@@ -178,7 +168,7 @@ def main() -> None:
     """Record what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", metavar="WORD")
-    parser.add_argument("--output", type=Path, default=Path("tests/ai/broken_runs.npz"))
+    parser.add_argument("--output", type=Path, default=Path("tests/ai/training/broken_runs.npz"))
     options = parser.parse_args()
     tables: dict[str, np.ndarray] = {}
     described: dict[str, Any] = {}

@@ -45,7 +45,6 @@ import pygame
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
 from ai.lander.missions import MISSIONS
-from ai.training.experiments import experiments
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.digits.kept import classifier_in
@@ -183,7 +182,7 @@ def rows() -> dict[str, Row]:
             for name in ("modern", "classic")
         },
         "dream": Row(DreamScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
-        "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
+        "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n)),
         "inside, classic": of_seven(DigitInsideScene, (pygame.K_n,), "classic"),
         "whynot, modern": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r)),
         "whynot, classic": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r), "classic"),
@@ -202,9 +201,8 @@ def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassif
 def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
-    experiment = experiments(scene.knobs.config, "learning_rate")[-1]
-    scene.laboratory.chosen = Chosen(experiment, "")
-    scene._split(experiment)
+    scene.laboratory.chosen = Chosen("rate_times_100")
+    scene._split("rate_times_100")
     return scene
 
 

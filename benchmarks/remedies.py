@@ -26,9 +26,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.network import build_network
-from ai.explain.inspection import NetworkHealth
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.curves import RecentCurves
 from ai.training.hints import Adviser, Hint
@@ -68,7 +65,6 @@ class Watched:
     resume: Path | None = None
     keep: Path | None = None
     history: History = field(default_factory=History)
-    health: NetworkHealth = field(default_factory=NetworkHealth)
 
     def __post_init__(self) -> None:
         pace = ALONE if self.config.num_envs == 1 else PACE
@@ -78,7 +74,6 @@ class Watched:
         self.history.reward_scale = self.config.reward_scale
         if self.resume:
             self.history = History.read(self.resume)
-        self._network = build_network(NUM_FEATURES, NUM_ACTIONS, self.config, np.random.default_rng(0))
         self.problem = ""
         self.take(next(self._run))
 
@@ -110,9 +105,7 @@ class Watched:
             elif isinstance(message, Point | SettingChange | Checkpoint):
                 self.history.append(message)
             elif isinstance(message, NetworkState):
-                self._network.values, self._network.gradients[:] = message.values, message.gradients
-                self.health.look(self._network, message.observation, self.config.gradient_clip)
-                return self.adviser.advise(self.history, self.config, self.health.dead_share, self.health.clipped_share)
+                return self.adviser.advise(self.history, self.config)
         return self.adviser.shown
 
     def close(self) -> None:

@@ -19,7 +19,7 @@ PACKAGES: Final = ("numpy", "pygame", "pygame_gui", "i18n", "font_manrope", "pla
 _BUILDS: Final = ("PyInstaller", "_pyinstaller_hooks_contrib")  # at work while it is built
 
 # Folders of data, and which files of them: each is found beside the packages, as in a checkout.
-DATA: Final = {"assets": "**/*", "models": "**/*", "game/locale": "**/*.mo"}
+DATA: Final = {"assets": "**/*", "models": "**/*", "examples": "microlander.py", "game/locale": "**/*.mo"}
 # Files of other packages: fonts and defaults that they open by themselves.
 PACKAGE_DATA: Final = {
     "font_manrope": ("files/Manrope-*.ttf",),

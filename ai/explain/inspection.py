@@ -1,19 +1,13 @@
-"""Inspection of a network: activations of each stage, weights between the stages, and dead units."""
+"""Inspection of a network: activations of each stage, and weights between the stages."""
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, NeuralNetwork
-
-_WITNESSES: Final = 64  # observations, to find the silent units by
-_LENGTHS: Final = 40  # gradients, to see how many were cut short: ten seconds of a live run
-_CUT: Final = 0.999  # of the longest allowed: so long is one that was cut
+from ai.nn import Array, DuelingLayer, FullyConnectedLayer, Layer, NeuralNetwork
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,52 +51,6 @@ def links(network: NeuralNetwork) -> list[Link]:
                 link = Link(*(part @ layer.mixture for part in (link.weights, link.bias, link.gradient)))
         found.append(link)
     return found
-
-
-def dead_units(network: NeuralNetwork, observations: npt.ArrayLike) -> float:
-    """Return the share of rectified units, 0 to 1, that answer none of the observations (n, inputs).
-
-    Such a unit passes no gradient either: unless its inputs change, it never learns again. 0 for a network
-    without rectified units, and without observations.
-    """
-    data: Array = np.atleast_2d(np.asarray(observations, network.dtype))
-    units = dead = 0
-    with np.errstate(all="ignore"):
-        for layer in network.layers if data.size else ():
-            data = layer.predict(data)
-            if isinstance(layer, ActivationLayer) and layer.activation.name == "relu":
-                silent = ~data.reshape(len(data), -1).any(axis=0)
-                units += silent.size
-                dead += int(silent.sum())
-    return dead / units if units else 0.0
-
-
-class NetworkHealth:
-    """Health of a network that learns, sampled now and then: dead units and clipped gradients.
-
-    Attributes:
-        dead_share: share of rectified units that answered none of the latest observations; None before there were
-            enough of them.
-
-    """
-
-    def __init__(self) -> None:
-        self.dead_share: float | None = None
-        self._observations: deque[Array] = deque(maxlen=_WITNESSES)
-        self._cut: deque[bool] = deque(maxlen=_LENGTHS)
-
-    @property
-    def clipped_share(self) -> float | None:
-        """Share of the latest gradients that were cut short; None while there are few."""
-        return float(np.mean(self._cut)) if len(self._cut) == _LENGTHS else None
-
-    def look(self, network: NeuralNetwork, observation: Array, gradient_clip: float) -> None:
-        """Sample a network with the gradients of its latest step, and an observation (inputs,) that it is given."""
-        self._cut.append(bool(np.linalg.norm(network.gradients) >= _CUT * gradient_clip))
-        self._observations.append(observation)
-        if len(self._observations) == _WITNESSES:
-            self.dead_share = dead_units(network, np.array(self._observations))
-            self._observations.clear()
 
 
 def _links(layer: Layer) -> bool:

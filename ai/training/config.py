@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from copy import copy
 from dataclasses import dataclass, fields
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar, Final, Self
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.schedule import exploration, exploration_of_each, importance, learning_rate, linear, target_rate
+from ai.agent.schedule import exploration, learning_rate, linear, target_rate
 from ai.agent.storage import AGENT_FILE
 from ai.files import brief, problem_in, shown
 from ai.files.knobs import knob
@@ -38,6 +36,7 @@ class Config(AgentConfig):
                               "exploration", low=0.0, high=1.0, live=True)
     env: str = knob(LANDER, "Environment to learn: our lander, lander-anywhere, or one of Gymnasium by its name.",
                     "task")
+    env_arguments: str = knob("", "Arguments that it is made with, as a JSON object.", "task")
     num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
     spawn: str = knob("thorough", "Where flights begin.", "lander", choices=_STARTS)
@@ -154,28 +153,13 @@ def presets_of(env: str) -> Mapping[str, Config]:
     return PRESETS if env == LANDER else {"gym": gym_config(env)}
 
 
-# Settings that define schedules, each with the one that acts in its place once it has no effect.
-_SCHEDULED: Final = {
-    "learning_rate": "final_learning_rate",
-    "final_learning_rate": "learning_rate",
-    "schedule_decisions": "final_learning_rate",
-    "final_touchdown_limits": "schedule_decisions",
-    "epsilon_start": "epsilon_end",
-    "epsilon_end": "epsilon_start",
-    "epsilon_decay": "epsilon_end",
-    "epsilon_decisions": "epsilon_end",
-    "epsilon_spread": "num_envs",
-}
-
-
 @dataclass(frozen=True)
 class InForce:
     """Values of the scheduled settings in force at one moment of a run."""
 
     newest_only: ClassVar = True
 
-    values: Mapping[str, float]  # by the name of the setting that each began as
-    idle: Mapping[str, str]  # settings that change nothing any more, each with the one that acts, or decides, instead
+    values: Mapping[str, float]  # by the name of the setting that acts
 
 
 def touchdown_limits(config: Config, decisions: int) -> float:
@@ -185,35 +169,9 @@ def touchdown_limits(config: Config, decisions: int) -> float:
 
 def in_force(config: Config, decisions: int, episodes: int) -> InForce:
     """Return the scheduled values in force after so many decisions and episodes."""
-    values = {
-        "learning_rate": learning_rate(config, decisions),
+    rate = "learning_rate" if decisions < config.schedule_decisions else "final_learning_rate"
+    return InForce({
+        rate: learning_rate(config, decisions),
         "tau": target_rate(config, decisions),
         "epsilon_start": exploration(config, decisions, episodes),
-    }
-    return InForce(values, idle(config, decisions, episodes))
-
-
-@lru_cache(maxsize=8)
-def idle(config: Config, decisions: int = 0, episodes: int = 0) -> Mapping[str, str]:
-    """Return the settings that change nothing now or later, each with the one that acts, or decides, in its place."""
-    found = config.unused()
-    moments = ((decisions, episodes), (decisions + 1, episodes + 1))
-    for name, instead in _SCHEDULED.items():
-        described = type(config).__dataclass_fields__[name].metadata
-        low, high = copy(config), copy(config)  # unchecked: a knob's own range makes sense, and this is asked often
-        vars(low)[name], vars(high)[name] = described["low"], described["high"]
-        if all(_scheduled(low, *moment) == _scheduled(high, *moment) for moment in moments):
-            found[name] = instead
-    if not any(exploration_of_each(config, exploration(config, *moment), config.num_envs).any() for moment in moments):
-        found["random_main"] = "epsilon_end"
-    return found
-
-
-def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ...]:
-    """Return all scheduled values at one moment, rounded so that they can be compared."""
-    each = exploration_of_each(config, exploration(config, decisions, episodes), config.num_envs)
-    corrected = importance(config, decisions) if config.prioritised else 0.0
-    limits = touchdown_limits(config, decisions)
-    rates = (learning_rate(config, decisions), target_rate(config, decisions))
-    decided = (*rates, limits, corrected, float(each[0]), float(each[-1]))
-    return tuple(round(value, 12) for value in decided)
+    })  # fmt: skip

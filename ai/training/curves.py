@@ -10,6 +10,8 @@ import numpy as np
 
 from ai.agent.schedule import learning_rate
 from ai.environment import Doubles
+from ai.lander.environment import LIMITS
+from ai.lander.rewards import FEET_STEPS_PAID
 from ai.training.config import Config
 from ai.training.history import REVERTED, History, SettingChange
 
@@ -17,6 +19,9 @@ ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly 
 FALLEN: Final = 0.3  # share of flights fewer than before a change, from which that is to blame
 COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
 RATES: Final = ("learning_rate", "final_learning_rate")
+_FARTHEST: Final = 25.0  # metres from the pad, at the most
+_FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
+_FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
 _PART: Final = 0.3  # of a run, the last: by it is judged whether a curve rises
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
 # Rates above which no step is sensible, by the optimizer. Modern still learns at 0.03, not at 0.1; classic's values
@@ -25,17 +30,10 @@ _TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
 
 
 class RecentCurves:
-    """Recent curves of a run, with the questions about them that several rules ask.
+    """Recent curves of a run, with the questions about them that several rules ask."""
 
-    Where known, `dead_share` is the share of hidden units that never come alive, and `clipped_share` that of the
-    gradients which were cut short.
-    """
-
-    def __init__(
-        self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
-    ) -> None:
+    def __init__(self, history: History, config: Config) -> None:
         self.history, self.config = history, config
-        self.dead_share, self.clipped_share = dead_share, clipped_share
         self.count = len(history.points)
 
     def last(self, name: str, points: int = 8) -> float:
@@ -137,11 +135,6 @@ class RecentCurves:
                 config = config.changed(**{each.name: each.before})
         return began
 
-    def best_moment(self) -> int | None:
-        """Return how many decisions the run had taken at its best checkpoint; None without any."""
-        checkpoints = self.history.checkpoints
-        return max(checkpoints, key=lambda each: each.success).decisions if checkpoints else None
-
 
 def rate_too_high(config: Config, decisions: int) -> bool:
     """Whether the learning rate after so many decisions is one at which no step is sensible."""
@@ -162,3 +155,29 @@ def mean(values: Doubles) -> float:
     """Return the mean of the finite values; NaN without any."""
     values = _finite(values)
     return float(values.mean()) if len(values) else float("nan")
+
+
+def loss_explodes(run: RecentCurves) -> bool:
+    """Whether the loss is ten times what it was, or infinite; NaN means that it is not known."""
+    if np.isinf(run.history["loss"][-1]):
+        return True
+    before = median(run.history["loss"][-208:-8])
+    return run.count >= 60 and before > 0 and run.last("loss") > 10 * before
+
+
+def values_run_away(run: RecentCurves) -> bool:
+    """Whether the mean Q-value is beyond twice what a flight could earn or lose."""
+    if np.isinf(run.history["mean_q"][-1]):
+        return True
+    least, most = returns(run.config)
+    return run.last("mean_q") < 2 * least or run.last("mean_q") > 2 * most
+
+
+def returns(config: Config) -> tuple[float, float]:
+    """Return the least and the most that a flight could earn, as the network sees it."""
+    weights = config.reward_weights
+    shaped = 10 * weights.distance * _FARTHEST + 10 * weights.speed * _FASTEST + weights.alignment
+    steady = weights.tilt + weights.engine + weights.switch + weights.time  # at every physics step
+    lost = min(0.0, steady) * _FLIGHT - abs(shaped) - abs(weights.terminal)
+    won = max(0.0, steady) * _FLIGHT + abs(shaped) + abs(weights.terminal) + abs(weights.feet) * FEET_STEPS_PAID
+    return config.reward_scale * lost, config.reward_scale * won

@@ -10,7 +10,6 @@ import numpy as np
 
 from ai.digits.training import DigitProgress, DigitTraining
 from ai.digits.validation import ValidationReading
-from ai.explain.digit_lesson import explain_digit
 from ai.nn import Array
 from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
 from ai.training.session import Session
@@ -87,10 +86,6 @@ class DigitSession(Session[DigitTraining]):
 
     # Commands
 
-    def _explain(self, slot: int, _: None = None) -> None:
-        """Explain the next learning step around the image in a row of its batch."""
-        self.messages.append(explain_digit(self.training, slot))
-
     def _restore_best(self) -> None:
         """Restore the network that read the images held out best."""
         if self._best is not None:
@@ -99,4 +94,4 @@ class DigitSession(Session[DigitTraining]):
             self._reading = None  # it was reading for the network that is gone
             self.record_change(REVERTED, None, accuracy)
 
-    commands = Session.commands | {"explain": _explain, "restore_best": _restore_best}
+    commands = Session.commands | {"restore_best": _restore_best}

@@ -1,27 +1,24 @@
 """Experiments: runs in which one thing differs greatly, beside a healthy twin of the same seed, and what came of them.
 
-A sabotage takes one part away from a configuration, so that a run shows what it is for; what else there is to try
-follows from a knob's range and scale. The effect depends on the configuration: the words that go with the sabotages
-were measured on one preset by `python -m benchmarks.sabotages`. Shares of training flights are of the last hundred,
-with their chance moves.
+A sabotage takes one part away from a configuration, so that a run shows what it is for. The effect depends on the
+configuration: the words that go with the sabotages were measured on one preset by `python -m benchmarks.sabotages`.
+Shares of training flights are of the last hundred, with their chance moves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from collections.abc import Callable
+from dataclasses import asdict, fields, is_dataclass
 from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
 from ai.lander.rewards import RewardWeights
-from ai.training.config import Config, idle
-from ai.training.curves import RecentCurves
-from ai.training.hints import RULES
+from ai.training.config import Config
+from ai.training.curves import RecentCurves, loss_explodes, values_run_away
 from ai.training.history import History
 
-FACTOR: Final = 100.0  # on a logarithmic scale
-_LEAST_FACTOR: Final = 3.0  # below which a difference shows nothing
+_FACTOR: Final = 100.0  # of a rate that is far too high
 Verdict = Literal["as_well", "later", "never", "runs_away"]
 VERDICTS: Final[tuple[Verdict, ...]] = ("as_well", "later", "never", "runs_away")
 LANDS: Final = 0.8  # share of a hundred flights from which a run counts as one that lands
@@ -29,7 +26,6 @@ _NEVER: Final = 0.3  # share below which it does not: near the pad, some land by
 _GRACE: Final = 2.0  # times as long as the twin took, after which it is judged
 _LATER: Final = 1.25  # times as long as the twin took, from which it came later
 _WORSE: Final = 0.15  # of a share that is worse than the twin's by more than chance
-_RUN_AWAY: Final = ("q_runs_away", "loss_explodes")  # rules of hints
 MEASURED: Final = "modern"  # the preset
 _TERMINAL_ALONE: Final = {name: 0.0 for name in vars(RewardWeights()) if name != "terminal"}
 _SMALLEST_MEMORY: Final = 100
@@ -41,7 +37,7 @@ SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
     "no_shaping": lambda c: {"reward_weights": RewardWeights(**{**vars(c.reward_weights), **_TERMINAL_ALONE})},
     "short_sight": lambda _: {"discount": 0.8},
     "rate_times_100": lambda c: {
-        name: min(1.0, FACTOR * getattr(c, name)) for name in ("learning_rate", "final_learning_rate")
+        name: min(1.0, _FACTOR * getattr(c, name)) for name in ("learning_rate", "final_learning_rate")
     },
     "no_normalisation": lambda _: {"layer_normalisation": False},
 }
@@ -50,50 +46,6 @@ SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
 def sabotaged(config: Config, name: str) -> Config:
     """Return the configuration without the part that `name` takes away; raises KeyError for an unknown name."""
     return config.changed(**SABOTAGES[name](config))
-
-
-@dataclass(frozen=True)
-class Experiment:
-    """One difference between two runs."""
-
-    kind: Literal["times", "divided", "value", "sabotage"]  # how the setting changes
-    amount: Any  # the factor, or the value; None for a sabotage that is no knob's
-    changes: Mapping[str, Any] = field(hash=False)  # the new settings, by the fields of Config
-    sabotage: str = ""  # its name; empty if it is none
-
-    def applied(self, config: Config) -> Config:
-        """Return the configuration with this difference; raises ValueError if it is not valid there."""
-        return config.changed(**self.changes)
-
-
-def experiment_of(config: Config, sabotage: str) -> Experiment:
-    """Return the experiment that is a sabotage; raises KeyError for an unknown name."""
-    return Experiment("sabotage", None, SABOTAGES[sabotage](config), sabotage)
-
-
-def experiments(config: Config, name: str) -> list[Experiment]:
-    """Return what can be tried on a numeric knob of a configuration: none of one that changes nothing now.
-
-    On a logarithmic scale, a hundred times more or less, or as much of either as the range allows; else either end of
-    the range. What a sabotage does under another name is that sabotage.
-    """
-    item = next(item for item in fields(config) if item.name == name)
-    low, high, value = item.metadata["low"], item.metadata["high"], getattr(config, name)
-    if name in idle(config):
-        return []
-    if item.metadata["log"]:
-        less, more = (float(f"{end:.6g}") for end in (max(low, value / FACTOR), min(high, value * FACTOR)))
-        ends: list[tuple[Any, ...]] = [("divided", value / less, less), ("times", more / value, more)]
-        ends = [each for each in ends if each[1] >= _LEAST_FACTOR]
-    else:
-        kind = int if item.type == "int" else float
-        ends = [("value", kind(end), kind(end)) for end in (low, high) if end != value]
-    found = []
-    for how, amount, end in ends:
-        alike = {sabotage: change(config) for sabotage, change in SABOTAGES.items()}
-        sabotage = next((each for each, changes in alike.items() if changes.get(name) == end), "")
-        found.append(Experiment(how, amount, alike[sabotage] if sabotage else {name: end}, sabotage))
-    return found
 
 
 def differences(before: Config, after: Config) -> dict[str, tuple[Any, Any]]:
@@ -133,7 +85,7 @@ class Flown(NamedTuple):
 def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | None:
     """Return what came of an experiment; None while it is too early to say, or its twin does not land either.
 
-    `failed` says that its training has diverged. It has run away if its mean Q-value or its loss has: see the hints.
+    `failed` says that its training has diverged. It has run away if its mean Q-value or its loss has.
     """
     if failed:
         return "runs_away"
@@ -141,7 +93,7 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | 
     if min(healthy.turns, other.turns) < _GRACE * needed:
         return None
     run = RecentCurves(other.history, other.config)
-    if any(rule.holds(run) for rule in RULES if rule.name in _RUN_AWAY):
+    if values_run_away(run) or loss_explodes(run):
         return "runs_away"
     if np.nan_to_num(other.history["success"]).max(initial=0.0) < _NEVER:
         return "never"

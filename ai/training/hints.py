@@ -1,6 +1,6 @@
 """Hints: rules that find visible faults in the recent past of a training run, and the choice of the one to show.
 
-A remedy is only offered if it brought back runs with that fault: `benchmarks.remedies` has tried each. The words that a
+There is a rule only for what the remedy brought runs back from: `benchmarks.remedies` has tried each. The words that a
 player reads for a rule belong to the game.
 """
 
@@ -11,35 +11,26 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
-from ai.lander.environment import LIMITS
-from ai.lander.rewards import FEET_STEPS_PAID
-from ai.training.config import Config, idle
-from ai.training.curves import COLLAPSE, ENOUGH, RATES, RecentCurves, median, rate_too_high
+from ai.training.config import Config
+from ai.training.curves import COLLAPSE, RATES, RecentCurves, loss_explodes, rate_too_high, values_run_away
 from ai.training.history import History
 
 HOLD: Final = 2.0  # seconds of training for which a rule must hold before its hint appears
 STAY: Final = 6.0  # seconds for which a hint stays at least: one that flickers cannot be read
 REST: Final = 45.0  # seconds for which one that was applied or dismissed does not come back
-_FARTHEST: Final = 25.0  # metres from the pad, at the most
-_FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
-_FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
 _SANE: Final = {"adam": (2e-3, 3e-4), "momentum": (1e-4, 1e-4), "sgd": (1e-3, 1e-3)}  # RATES, by the optimizer
 _TARGET_STEPS: Final = 8_000  # gradient steps after which a target should be nearly where the network is
 _RISES: Final = 0.05  # gain of the share that lands, from which a run is on its way back
-_PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say how close it is
 
 
 class HintRule(NamedTuple):
-    """Rule for one fault: the charts that it is about, and its remedy.
+    """Rule for one fault, and its remedy.
 
     One `of_settings` needs no curves: it holds as soon as a setting is changed.
     """
 
     name: str
     holds: Callable[[RecentCurves], bool]
-    about: tuple[str, ...] = ("success", "mean_return")
     remedy: Callable[[RecentCurves], Mapping[str, Any]] = lambda _: {}
     back_to: Callable[[RecentCurves], int | None] = lambda _: None
     of_settings: bool = False
@@ -52,23 +43,7 @@ def _damaged(run: RecentCurves) -> bool:
     """Whether steps were far too long at some time, and the network still shows the damage."""
     if run.damaged_at() is None or run.last("success") > 0.5:
         return False
-    return any(sign(run) for sign in (_loss_explodes, _q_runs_away, _dead_units, _collapsed, _crashes, _hovers))
-
-
-def _loss_explodes(run: RecentCurves) -> bool:
-    """Whether the loss is ten times what it was, or infinite; NaN means that it is not known."""
-    if np.isinf(run.history["loss"][-1]):
-        return True
-    before = median(run.history["loss"][-208:-8])
-    return run.count >= 60 and before > 0 and run.last("loss") > 10 * before
-
-
-def _q_runs_away(run: RecentCurves) -> bool:
-    """Whether the mean Q-value is beyond twice what a flight could earn or lose."""
-    if np.isinf(run.history["mean_q"][-1]):
-        return True
-    least, most = returns(run.config)
-    return run.last("mean_q") < 2 * least or run.last("mean_q") > 2 * most
+    return any(sign(run) for sign in (loss_explodes, values_run_away, _collapsed, _crashes, _hovers))
 
 
 def _target_stands(run: RecentCurves) -> bool:
@@ -76,22 +51,6 @@ def _target_stands(run: RecentCurves) -> bool:
     config = run.config
     in_use = config.target_judges or config.fly_target
     return in_use and config.target_update_interval / config.tau > _TARGET_STEPS
-
-
-def _short_sight(run: RecentCurves) -> bool:
-    """Whether the discount makes a reward a second later, after fifteen decisions, count for little."""
-    return run.is_late() and run.config.discount < 0.96 and run.last("success") < 0.6
-
-
-def _no_guide(run: RecentCurves) -> bool:
-    """Whether no part of the reward shows a lander on its way that it comes closer."""
-    weights = run.config.reward_weights
-    return run.is_late() and run.last("success") < 0.6 and not any(getattr(weights, part) for part in _PARTS)
-
-
-def _dead_units(run: RecentCurves) -> bool:
-    """Whether more than half of the units give 0 for every input: then they can no longer learn."""
-    return run.config.activation == "relu" and (run.dead_share or 0.0) > 0.5
 
 
 def _collapsed(run: RecentCurves) -> bool:
@@ -109,11 +68,6 @@ def _hovers(run: RecentCurves) -> bool:
     return run.is_late() and run.last("timed_out") >= 0.5 and run.last("success") <= 0.3
 
 
-def _plateau(run: RecentCurves) -> bool:
-    late = run.is_late() and run.last("decisions", 1) >= 1.5 * ENOUGH
-    return late and 0.05 < run.last("success") < 0.85 and abs(run.gained("success")) < 0.04
-
-
 def _small_memory(run: RecentCurves) -> bool:
     return run.config.replay_size < 8 * run.config.batch_size
 
@@ -122,21 +76,6 @@ def _overfed(run: RecentCurves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
     return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("success") >= 0.6
-
-
-def _clipped(run: RecentCurves) -> bool:
-    """Whether most gradients are clipped to one length: then the size of an error no longer counts."""
-    return (run.clipped_share or 0.0) > 0.6
-
-
-def returns(config: Config) -> tuple[float, float]:
-    """Return the least and the most that a flight could earn, as the network sees it."""
-    weights = config.reward_weights
-    shaped = 10 * weights.distance * _FARTHEST + 10 * weights.speed * _FASTEST + weights.alignment
-    steady = weights.tilt + weights.engine + weights.switch + weights.time  # at every physics step
-    lost = min(0.0, steady) * _FLIGHT - abs(shaped) - abs(weights.terminal)
-    won = max(0.0, steady) * _FLIGHT + abs(shaped) + abs(weights.terminal) + abs(weights.feet) * FEET_STEPS_PAID
-    return config.reward_scale * lost, config.reward_scale * won
 
 
 # Remedies
@@ -196,27 +135,17 @@ def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
     return {"gradient_steps": enough} if config.gradient_steps > 16 and enough else {"num_envs": 256}
 
 
-_LEARNING: Final = ("success", "mean_return", "loss")
 # The most severe first.
 RULES: Final = (
-    HintRule("rate_too_high", lambda run: rate_too_high(run.config, int(run.last("decisions", 1))), _LEARNING,
-             _sane_rates, _before_damage, of_settings=True),
-    HintRule("damaged", _damaged, _LEARNING, back_to=_before_damage),
-    HintRule("changed", lambda run: bool(_as_before(run)), remedy=_as_before, back_to=_before("reward_weights.")),
-    HintRule("loss_explodes", _loss_explodes, ("loss",)),
-    HintRule("q_runs_away", _q_runs_away, ("mean_return", "loss")),
-    HintRule("dead_units", _dead_units, _LEARNING),
-    HintRule("collapsed", _collapsed, back_to=RecentCurves.best_moment),
-    HintRule("target_stands", _target_stands, _LEARNING, _nearer_target, of_settings=True),
-    HintRule("short_sight", _short_sight),
-    HintRule("no_guide", _no_guide),
-    HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, remedy=_for_crashes),  # "still": never landed
-    HintRule("hovers", _hovers),
-    HintRule("small_memory", _small_memory, _LEARNING, _more_memory, of_settings=True),
-    HintRule("overfed", _overfed, _LEARNING, _fewer_steps, of_settings=True),
-    HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, ("epsilon", "success"), _less_random),
-    HintRule("clipped", _clipped, ("loss",)),
-    HintRule("plateau", _plateau),
+    HintRule("rate_too_high", lambda run: rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
+             _before_damage, of_settings=True),
+    HintRule("damaged", _damaged, back_to=_before_damage),
+    HintRule("changed", lambda run: bool(_as_before(run)), _as_before, _before("reward_weights.")),
+    HintRule("target_stands", _target_stands, _nearer_target, of_settings=True),
+    HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, _for_crashes),  # "still": never landed
+    HintRule("small_memory", _small_memory, _more_memory, of_settings=True),
+    HintRule("overfed", _overfed, _fewer_steps, of_settings=True),
+    HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
 )  # fmt: skip
 
 
@@ -244,18 +173,8 @@ class Adviser:
         self._rests: dict[str, float] = {}  # until when each is quiet
         self._before: dict[str, Any] | None = None  # what the last remedy has changed
 
-    def advise(
-        self,
-        history: History,
-        config: Config,
-        dead_share: float | None = None,
-        clipped_share: float | None = None,
-    ) -> Hint | None:
-        """Return what to show now, if anything; call it as often as there is news.
-
-        Where known, `dead_share` is the share of hidden units that never come alive, and
-        `clipped_share` that of the gradients which were cut short.
-        """
+    def advise(self, history: History, config: Config) -> Hint | None:
+        """Return what to show now, if anything; call it as often as there is news."""
         self.config = config
         if not len(history.points):
             return None
@@ -263,7 +182,7 @@ class Adviser:
         if now < self._now:
             self.reset()
         self._now = now
-        run = RecentCurves(history, config, dead_share, clipped_share)
+        run = RecentCurves(history, config)
         # Before that, curves are those of before a change, and it is not known yet what that has brought.
         steady = run.since_change() >= 100.0 * COLLAPSE  # flights
         holding = {rule.name: rule for rule in RULES if (steady or rule.of_settings) and rule.holds(run)}
@@ -283,12 +202,7 @@ class Adviser:
             return
         if self.shown is None or self.shown.name != rule.name:
             self._shown_since = self._now
-        idle_now = idle(run.config, *(int(run.last(name, 1)) for name in ("decisions", "episodes")))
-        remedy = {
-            name: value
-            for name, value in rule.remedy(run).items()
-            if value != attrgetter(name)(run.config) and name not in idle_now
-        }
+        remedy = {name: value for name, value in rule.remedy(run).items() if value != attrgetter(name)(run.config)}
         self.shown = Hint(rule.name, remedy, rule.back_to(run))
 
     def apply(self, *, went_back: bool = False) -> Mapping[str, Any]:

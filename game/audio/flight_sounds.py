@@ -1,15 +1,12 @@
-"""Sounds of a flight: engines that follow the thrust, touches, warnings, and the altitude tone."""
+"""Sounds of a flight: engines that follow the thrust, touches and warnings."""
 
 from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.sensing import near_edges
-from game.audio.instruments import RUNGS, altitude_key
 from game.audio.mixer import Sound
 from game.core.clock import TimeScale
 
@@ -24,11 +21,6 @@ _REACTION: Final = 0.4  # reaction time of a warned pilot in seconds
 _WARN_TILT_BELOW: Final = 6.0  # metres
 _WARN_EDGE: Final = 6.0  # metres
 _WARN_EVERY: Final = 40  # steps
-# The altitude tone has a note for every half metre near the ground, and for every metre above.
-HEIGHTS: Final = np.array([*np.arange(0.0, 4.0, 0.5), *np.arange(4.0, 4.0 + RUNGS - 8)])
-_STICKS: Final = 0.12  # metres of hysteresis around a note's bounds, so that hovering there does not repeat notes
-_STRUCK_AGAIN: Final = 90  # steps
-_PAD_ASIDE: Final = 12.0  # metres to the pad at which the sound is panned fully to its side
 
 
 class FlightSound:
@@ -62,10 +54,8 @@ class FlightSound:
         if outcome is not self._outcome and outcome in _ENDS:
             self._end(outcome)
         self._outcome = outcome
-        if outcome is Outcome.FLYING:
-            self._sound_height()
-            if self._warns:
-                self._warn()
+        if outcome is Outcome.FLYING and self._warns:
+            self._warn()
 
     def _begin(self, slot: int) -> None:
         """Start to follow another lander or flight, without sounds for what happened to it before."""
@@ -74,7 +64,6 @@ class FlightSound:
         self._outcome = Outcome(int(env.outcome[slot]))
         self._down, self._fall = env.contacts[slot].copy(), 0.0
         self._touched = bool(self._down.any())
-        self._rung, self._since_note = -1, 0
 
     def _end(self, outcome: Outcome) -> None:
         """Play the sound of an ending; a craft that is whole beside the pad is set down, and lost its landing."""
@@ -123,17 +112,3 @@ class FlightSound:
         braking = env.params.main_thrust / env.params.mass - env.gravity
         left = float(env.altitude[slot]) - (0.0 if env.actions[slot] >= 3 else _REACTION * descent)
         return descent**2 - env.limits.touch_speed**2 > 2 * max(left, 0.0) * _HARD_BRAKING * braking
-
-    def _sound_height(self) -> None:
-        """Play a note for each step of height passed, panned to the pad's side; their rate tells the speed."""
-        env, slot = self._env, self._slot
-        height = float(env.altitude[slot])
-        aside = float(env.pad[slot, 0] - env.position[slot, 0])
-        rung = int(np.clip(np.searchsorted(HEIGHTS, height, side="right") - 1, 0, RUNGS - 1))
-        low = HEIGHTS[self._rung] - _STICKS
-        high = HEIGHTS[min(self._rung + 1, RUNGS - 1)] + _STICKS
-        self._since_note += 1
-        passed = rung != self._rung and (self._rung < 0 or not low <= height <= high)
-        if passed or self._since_note >= _STRUCK_AGAIN:
-            self._rung, self._since_note = rung, 0
-            self._sound.play(altitude_key(rung), 1.0 if passed else 0.6, float(np.clip(aside / _PAD_ASIDE, -0.8, 0.8)))

@@ -17,10 +17,8 @@ from numpy.typing import NDArray
 from game.audio import synth
 from game.audio.synth import Signal, band_pass, edges, glide, high_pass, low_pass, partials, sine, strike, together
 
-GROUPS: Final = ("effects", "interface", "ambience", "altitude")
+GROUPS: Final = ("effects", "interface", "ambience")
 _D4: Final = 293.66  # Hz
-_SCALE: Final = (0, 2, 3, 5, 7, 9, 10)  # the Dorian mode, in semitones
-RUNGS: Final = 26  # notes of the altitude tone
 _BEDS: Final = 6.0  # seconds of a noise loop, long enough that its repetition is not heard
 _PAD: Final = 24.0
 
@@ -51,12 +49,6 @@ class Instrument:
 def note(semitones: float) -> float:
     """Return the frequency in Hz of the note `semitones` above the D over middle C."""
     return _D4 * float(2 ** (semitones / 12))
-
-
-def rung(number: int) -> float:
-    """Return the frequency in Hz of a note of the altitude tone: a scale upwards from the E under middle C."""
-    octave, degree = divmod(number + 1, len(_SCALE))
-    return note(12 * (octave - 1) + _SCALE[degree])
 
 
 # Engines
@@ -155,14 +147,6 @@ def _edge(_: np.random.Generator) -> Signal:
     return together(_mallet(-12, 0.5), synth.late(_mallet(-12, 0.5), 0.16))
 
 
-def _ping(_: np.random.Generator, number: int) -> Signal:
-    """Note of the altitude tone; low notes have overtones, for small loudspeakers."""
-    frequency = rung(number)
-    warm = min(1.0, 330 / frequency)
-    rows = ((1, 1, 0.26), (2, 0.5 * warm, 0.20), (3, 0.3 * warm, 0.16))
-    return partials(frequency, rows, 0.28) * edges(0.28, 0.006, 0.05)
-
-
 # The interface
 
 
@@ -207,11 +191,6 @@ def _beep(semitones: float, seconds: float) -> Signal:
     return (tone + 0.15 * tone**3) * edges(seconds, 0.012, 0.03)
 
 
-def altitude_key(number: int) -> str:
-    """Return the key of a note of the altitude tone."""
-    return f"altitude_{number}"
-
-
 # In the order in which they are synthesised: sounds needed early come first.
 INSTRUMENTS: Final[dict[str, Instrument]] = {
     "move": Instrument(partial(_tick, semitones=26, seconds=0.035), "interface", -19),
@@ -233,6 +212,4 @@ INSTRUMENTS: Final[dict[str, Instrument]] = {
     "slow_crash": Instrument(_slow_crash, "effects", -6),
     "landed": Instrument(_landed, "effects", -12),
     "lost": Instrument(_lost, "effects", -15),
-    # Low notes are louder because the ear is less sensitive to them.
-    **{altitude_key(n): Instrument(partial(_ping, number=n), "altitude", -15 - 8 * n / RUNGS) for n in range(RUNGS)},
 }

@@ -14,7 +14,7 @@ import pygame
 from numpy.typing import NDArray
 
 from game.audio.instruments import GROUPS, INSTRUMENTS, Instrument
-from game.audio.synth import RATE, pan_gains
+from game.audio.synth import RATE
 from game.core.settings import Settings
 
 _BUFFER: Final = 512  # samples per buffer of the device: 12 ms of latency
@@ -119,8 +119,8 @@ class Sound:
                 self.open()  # on another device, if any
 
     @_while_open
-    def play(self, key: str, volume: float = 1.0, pan: float = 0.0) -> None:
-        """Play a short sound once; `volume` is 0 to 1, `pan` from -1, left, to 1, right."""
+    def play(self, key: str, volume: float = 1.0) -> None:
+        """Play a short sound once; `volume` is 0 to 1."""
         gain = volume * self.gains[self._instruments[key].group]
         since = self._step - self._begun.get(key, -_APART)
         sound = self._sound(key)
@@ -128,7 +128,7 @@ class Sound:
             return
         channel = sound.play()  # never one of the channels reserved for loops
         if channel is not None:
-            channel.set_volume(*np.minimum(gain * pan_gains(pan), 1.0).tolist())
+            channel.set_volume(min(gain, 1.0))
             self._begun[key] = self._step
 
     def loop(self, key: str, volume: float) -> None:

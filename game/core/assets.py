@@ -8,3 +8,4 @@ from typing import Final
 _ROOT: Final = Path(__file__).resolve().parents[2]
 ASSETS_DIR: Final = _ROOT / "assets"
 MODELS_DIR: Final = _ROOT / "models"
+MICROLANDER: Final = _ROOT / "examples" / "microlander.py"

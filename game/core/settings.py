@@ -39,7 +39,6 @@ class Settings:
     effects_volume: Share = 0.9
     interface_volume: Share = 0.7
     ambience_volume: Share = 0.7
-    altitude_volume: Share = 0.0  # volume of the tone that makes height and speed audible; 0 is off
     model: str = ""  # name of the network last chosen to fly; empty for the shipped default
     help: Annotated[str, OneOf(HELP)] = "off"  # how early the network steps in
     three_pads: bool = False  # three pads among hills, instead of one on a plain

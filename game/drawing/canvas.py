@@ -18,10 +18,7 @@ from game.drawing.tokens import FAINT, INK, LABEL, NIGHT0, PALETTE, PANEL, PANEL
 from game.drawing.typeface import Weight
 
 _LEAST: Final = 0.7  # share of a size
-_MOST_WORDS: Final = 256  # text boxes noted in a frame, at most
-_MOST_SEEN: Final = 16  # pads and craft likewise
-_FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
-_AROUND: Final = 4.0  # points of margin around noted text
+_MOST_EXPLAINED: Final = 256  # areas of a frame, at most
 
 Align = Literal["left", "centre", "right"]
 SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
@@ -59,8 +56,6 @@ class Canvas:
         zoom: factor by which the player wants text enlarged; `reading` follows it.
         grows: whether small text is enlarged by `typeface.grow`, instead of everything by `zoom`.
         pointer: position of the mouse in points; None while it is not in use.
-        words: boxes of words, widgets and panels of the last frame with a margin, in the window's pixels.
-        looked_at: boxes of what is looked at in the last frame, pads and craft, in the window's pixels.
         explained: areas of this frame that can be explained, in the order in which they were drawn.
 
     """
@@ -72,11 +67,7 @@ class Canvas:
         self._whole: Canvas | None = None
         self.moved: Point = (0.0, 0.0)
         self.pointer: Point | None = None
-        self.words: list[pygame.Rect] = []
-        self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # boxes noted in this frame
-        self.looked_at: list[pygame.Rect] = []
-        self._seen: deque[pygame.Rect] = deque(maxlen=_MOST_SEEN)
-        self.explained: deque[Explanation] = deque(maxlen=_MOST_WORDS)
+        self.explained: deque[Explanation] = deque(maxlen=_MOST_EXPLAINED)
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
@@ -170,34 +161,16 @@ class Canvas:
         return self._on(pygame.Surface(self.rect(0, 0, width, height).size))
 
     def _on(self, surface: pygame.Surface) -> Canvas:
-        """Return a canvas on a surface of its own, which is no part of the window; of it nothing is noted."""
+        """Return a canvas on a surface of its own, which is no part of the window; of it nothing is explained."""
         own = copy(self)
         own.surface, own.origin, own.moved = surface, (0, 0), (0.0, 0.0)
         own.view, own._whole = PAGE.copy(), None
-        own._covered, own._seen, own.explained = deque(maxlen=0), deque(maxlen=0), deque(maxlen=0)
+        own.explained = deque(maxlen=0)
         return own
 
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
         """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""
-        self.cover(self.surface.blit(sheet.surface, self.rect(x, y, 0, 0)))
-
-    def cover(self, area: pygame.Rect) -> None:
-        """Note an area of the surface, in pixels, that holds something to read, for stars and notes to avoid."""
-        self._covered.append(area)
-
-    def look_at(self, area: pygame.typing.RectLike) -> None:
-        """Note an area that a player looks at, likewise."""
-        self._seen.append(pygame.Rect(area))
-
-    @contextmanager
-    def unnoted(self) -> Iterator[None]:
-        """Draw without noting areas that hold something to read; a context manager."""
-        covered = self._covered
-        self._covered = deque(maxlen=0)
-        try:
-            yield
-        finally:
-            self._covered = covered
+        self.surface.blit(sheet.surface, self.rect(x, y, 0, 0))
 
     @contextmanager
     def clipped(self, box: pygame.typing.RectLike) -> Iterator[None]:
@@ -208,14 +181,6 @@ class Canvas:
             yield
         finally:
             self.surface.set_clip(before)
-
-    def turn_page(self) -> None:
-        """Begin a new frame: move the noted areas to `words`."""
-        around = 2 * self.px(_AROUND)
-        self.words = [box.inflate(around, around) for box in self._covered]
-        self.looked_at = list(self._seen)
-        for noted in (self._covered, self._seen, self.explained):
-            noted.clear()
 
     def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
         """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
@@ -254,8 +219,6 @@ class Canvas:
         else:
             for surface, across, baseline in parts:
                 self._blit(surface, (round(x + across), y - baseline), alpha)
-        if alpha > _FAINT_WORDS:
-            self.cover(pygame.Rect(x, y - above, width, above + below))
         return pygame.FRect((x - left) / scale, (y - above - top) / scale, width / scale, (above + below) / scale)
 
     def text_width(
@@ -369,8 +332,6 @@ class Canvas:
             self.surface.blit(surface, area.topleft, None, flags)
         else:
             self.rounded(rect, 8, PANEL, alpha * shown)
-        if alpha * shown > _FAINT_WORDS:
-            self.cover(self.rect(*pygame.FRect(rect)))
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""

@@ -1,4 +1,4 @@
-"""Background of screens without a world: a night sky with a glow at the bottom, and stars away from the words."""
+"""Background of screens without a world: a night sky with a glow at the bottom, and stars."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import pygame
 
-from ai.environment import Bools, Doubles
+from ai.environment import Doubles
 from game.drawing.canvas import Canvas, Stamp
 from game.drawing.paint import PIECE, Sheet, blocks
 from game.drawing.paint_cache import InPieces, Steps
@@ -22,39 +22,26 @@ _GLOW: Final = (150, 170, 220)  # of a bright star
 
 
 class NightSky:
-    """Still night sky, whose stars keep away from words.
-
-    Its picture without stars is shared by all screens with the same glow; the stars, an own surface each, are copied
-    anew in every frame, so that nothing is painted again when words hide some of them.
-    """
+    """Still night sky. Its picture without stars is shared by all screens with the same glow."""
 
     def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
         self._page = rng.random((stars, 2)) * VIEW_SIZE
         self._brightness = rng.random(stars) ** 4
         self._ember = ember
         self._size = (0, 0)  # of the window for which the stars were painted, in pixels
-        self._middles: Doubles  # of all stars, in pixels: on the page, and beside or above and below it
         self._stars: list[_Star]
-        self._words: list[pygame.Rect] = []  # that the stars avoid
-        self._shown: list[_Star] = []
 
-    def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
-        """Draw the sky over the whole view. It does not change with time."""
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the sky over the whole view."""
         canvas = canvas.whole
         surface, size = canvas.surface, canvas.surface.get_size()
-        fits = size == self._size
-        if not fits:
+        if size != self._size:
             self._size = size
-            places = _spread(self._page, canvas.view)
-            self._middles = places * canvas.scale + canvas.origin
-            self._stars = [self._star(canvas, number, place) for number, place in enumerate(places.tolist())]
-        if not fits or canvas.words != self._words:
-            self._words = canvas.words
-            free = np.flatnonzero(beside(self._middles, canvas.words)).tolist()
-            self._shown = [self._stars[number] for number in free]
+            places = _spread(self._page, canvas.view).tolist()
+            self._stars = [self._star(canvas, number, place) for number, place in enumerate(places)]
         surface.blit(_night(size, self._ember).picture, (0, 0))
-        surface.fblits([star.dot for star in self._shown])
-        surface.fblits([star.glow for star in self._shown if star.glow], pygame.BLEND_RGB_ADD)
+        surface.fblits([star.dot for star in self._stars])
+        surface.fblits([star.glow for star in self._stars if star.glow], pygame.BLEND_RGB_ADD)
 
     def _star(self, canvas: Canvas, number: int, place: Sequence[float]) -> _Star:
         """Paint the star of a number at a place in points; it fades towards the horizon."""
@@ -116,12 +103,3 @@ def _paint_night(size: tuple[int, int], ember: float, share: float) -> Steps[pyg
         sheet.put_larger(rows.start, [channel[rows] - np.float32(0.5) for channel in channels], times)
         yield channels[0][rows].size * times
     return sheet.done()
-
-
-def beside(places: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
-    """Return a mask (n,) of the places (n, 2) that lie in none of the boxes."""
-    edges = np.array([(box.left, box.top, box.right, box.bottom) for box in boxes]).reshape(-1, 4)
-    past, beyond = places[:, None] >= edges[:, :2], places[:, None] >= edges[:, 2:]
-    outside: Bools = ~np.logical_and.reduce(past & ~beyond, axis=2)
-    free: Bools = np.logical_and.reduce(outside, axis=1)
-    return free

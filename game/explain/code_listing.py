@@ -75,6 +75,14 @@ def draw_listing(
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)
 
 
+def listing_height(source: Source, width: float) -> float:
+    """Return how high all of a source is, drawn so wide without notes, in points."""
+    size = typeface.grown(LABEL)
+    room = int((width - _NUMBER) // typeface.digit_width(size, "code"))
+    rows = sum(len(list(_broken(number, line, max(room, 20)))) for number, line in source.lines)
+    return (rows + 2) * _LEADING * size / LABEL
+
+
 def _broken(number: int, line: str, room: int) -> Iterator[tuple[int, str, bool]]:
     """Yield the rows of a line of code: its number, a text no longer than `room`, and whether it is the first."""
     indent = len(line) - len(line.lstrip())
@@ -103,8 +111,8 @@ def _coloured(text: str, lit: bool) -> Iterator[tuple[str, Colour, int]]:
         yield mark + comment, MUTE, len(code)
 
 
-def add_listing(column: Column, height: float, shown: Callable[[], Shown]) -> None:
-    """Add a listing to a column, painted when what `shown` returns has changed."""
+def add_listing(column: Column, height: float | Callable[[float], float], shown: Callable[[], Shown]) -> None:
+    """Add a listing to a column, painted when what is `shown` has changed; its height may follow from the width."""
     cache = PaintCache()
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:

@@ -113,8 +113,7 @@ def _draw(canvas: Canvas, area: Explanation) -> None:
     elif box.right + _WIDTH + 40 > within.right:
         within.height -= box.bottom + 6 - within.top
         within.bottom, place = view.bottom - _MARGIN, (box.left - _ASIDE, box.bottom)
-    with canvas.unnoted():
-        draw_tooltip(canvas, place, within, what, rows)
+    draw_tooltip(canvas, place, within, what, rows)
 
 
 def _rows(canvas: Canvas, line: str) -> list[TooltipRow]:

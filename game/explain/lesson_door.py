@@ -1,4 +1,4 @@
-"""Door from a training run to one of its lessons: of which lander or image, and the answer when it comes."""
+"""Door from a training run to one of its lessons: of which lander, and the answer when it comes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Final
 
 from ai.explain.agent_lesson import Lesson
-from ai.explain.digit_lesson import DigitLesson
 from game.core import texts
 from game.core.scene import Transition, push
 from game.training.run import TrainingRun
@@ -22,17 +21,17 @@ class LessonDoor:
         self._shown = run.lesson
         self._asked, self._waited = False, 0  # whether one was asked for, and how many frames ago
 
-    def ask(self, slot: int = 0, moment: int | None = None) -> None:
-        """Ask for the lesson of a lander, at a moment of the run, or of an image of the next batch."""
+    def ask(self, slot: int, moment: int | None = None) -> None:
+        """Ask for the lesson of a lander, at a moment of the run."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return
         self._shown, self._asked, self._waited = self._run.lesson, True, 0
         self._run.ask("explain", slot, moment)
 
-    def answer(self) -> Lesson | DigitLesson | None:
+    def _answer(self) -> Lesson | None:
         """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
-        lesson: Lesson | DigitLesson | None = self._run.lesson
+        lesson: Lesson | None = self._run.lesson
         if not self._asked:
             return None
         if lesson is None or lesson is self._shown:
@@ -44,17 +43,6 @@ class LessonDoor:
         return lesson
 
     def update(self) -> Transition | None:
-        """Open the lesson once it has come; with one of an image goes the door, to those of other images."""
-        lesson = self.answer()
-        return push("lesson", lesson, self if isinstance(lesson, DigitLesson) else None) if lesson else None
-
-    def another(self, lesson: DigitLesson) -> None:
-        """Ask for the lesson of the image after that of a lesson, or of the first one, in the batch that comes next."""
-        self.ask((lesson.step.row + 1) % len(lesson.labels))
-
-    def next_lesson(self) -> DigitLesson | None:
-        """Return the lesson of another image once it has come; only while no other scene listens to the run."""
-        for note in self._run.poll():
-            self._note(note)
-        lesson = self.answer()
-        return lesson if isinstance(lesson, DigitLesson) else None
+        """Open the lesson once it has come."""
+        lesson = self._answer()
+        return push("lesson", lesson) if lesson else None

@@ -52,14 +52,16 @@ class Attempt:
 
     @property
     def result(self) -> str:
-        """How it ended, for the list and for the line."""
+        """How it ended, with its points."""
+        if self.outcome == Outcome.FLYING.name:
+            return texts.DAYS_LEFT
+        if self.outcome == Outcome.LANDED.name:
+            return texts.DAILY_LANDED.format(points=self.score)
         return texts.BESIDE_RESULT if self.intact else texts.RIVAL_RESULTS[self.outcome]
 
     def line_as(self, attempt: str) -> str:
         """Return the result in a line for a message; `attempt` is a key of `texts.DAILY_ATTEMPTS`."""
-        landed = self.outcome == Outcome.LANDED.name
-        end = texts.DAILY_LANDED.format(points=self.score) if landed else self.result
-        return texts.DAILY_LINE.format(day=self.day, end=end, attempt=texts.DAILY_ATTEMPTS[attempt])
+        return texts.DAILY_LINE.format(day=self.day, end=self.result, attempt=texts.DAILY_ATTEMPTS[attempt])
 
 
 class Days:
@@ -107,11 +109,6 @@ class Days:
         best = sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]
         records = (self._record(entry.file) for entry in best)
         return next((record for record in records if record and record.recording.seed == day.toordinal()), None)
-
-    def first_flight(self, day: date) -> Record | None:
-        """Return the flight of a day's first attempt; None if there is none, or it cannot be read any more."""
-        attempt = self.attempts.get(day.isoformat())
-        return self._record(attempt.file) if attempt else None
 
     def _record(self, file: str) -> Record | None:
         if file not in self._records.kept():

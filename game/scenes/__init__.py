@@ -13,7 +13,7 @@ from game.ui.context import Context
 ROUTES: Final = {
     "menu": "menus.menu.MenuScene", "flights": "menus.menu.FlightsScene", "play": "play.scene.PlayScene",
     "tutorial": "play.starts.tutorial", "descent": "play.starts.descent", "race": "play.starts.race",
-    "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "days": "play.daily.DaysScene",
+    "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "day": "play.starts.day",
     "watch": "watch.scene.WatchScene", "pilots": "watch.pilots.PilotsScene",
     "train": "train.scene.TrainScene", "runs": "train.networks.NetworksScene",
     "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",
@@ -24,7 +24,8 @@ ROUTES: Final = {
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
     "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
     "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.list.LearnScene",
-    "chapter": "learn.scene.ChapterScene", "lesson": "lesson.scene.LessonScene",
+    "one_file": "learn.one_file.OneFileScene", "chapter": "learn.scene.ChapterScene",
+    "lesson": "lesson.scene.LessonScene",
     "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip
 

@@ -116,7 +116,7 @@ class App:
         steps = self._steps.advance(time_now - self._last)
         self._last = time_now
         for _ in range(steps):
-            self.notes.update(self.canvas)
+            self.notes.update()
             if problem := self.settings_writer.problem():
                 self.notes.show(problem)
             self._guarded(self.scenes.update)
@@ -260,10 +260,10 @@ class App:
 
     def draw(self) -> None:
         """Draw one frame: the scenes, and the note over them."""
-        self.canvas.turn_page()
+        self.canvas.explained.clear()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._guarded(lambda: self.scan.draw(self.scenes.top, self.canvas))
-        self.notes.draw(self.canvas)
+        self.notes.draw(self.canvas, low=self.scenes.top.notes_low)
         self.window.flip()
 
     def _save_screenshot(self) -> None:

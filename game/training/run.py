@@ -9,7 +9,6 @@ from typing import Any, Final
 
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
-from ai.explain.digit_lesson import DigitLesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
 from ai.training.config import InForce
@@ -30,7 +29,7 @@ AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
-    DigitLesson: "lesson", Confusion: "confusion",
+    Confusion: "confusion",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES

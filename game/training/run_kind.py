@@ -5,19 +5,27 @@ from __future__ import annotations
 from typing import Final
 
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
-from ai.training.config import PRESETS, Config, idle
+from ai.training.config import PRESETS, Config
 from ai.training.digit_session import DigitSession
 from ai.training.experiments import SABOTAGES
 from ai.training.lander_session import LanderSession
 from game.core import texts
-from game.training.run_settings import RunKind
+from game.training.run_settings import SEED, RunKind
 
 LANDERS: Final = RunKind(
-    LanderSession, Config, PRESETS, lambda: texts.PRESETS, "lander", ("learning_rate", "epsilon_end", "discount"),
-    tuple(SABOTAGES), idle,
+    LanderSession, Config, PRESETS, lambda: texts.PRESETS,
+    first=("learning_rate", "epsilon_end", "discount"),
+    page=(
+        "learning_rate", "final_learning_rate", "epsilon_end", "epsilon_decisions", "discount", "n_step", "batch_size",
+        "gradient_steps", "replay_size", "tau", "hidden", "num_envs", "spawn", "reward_weights.distance",
+        "reward_weights.time", SEED,
+    ),
+    sabotages=tuple(SABOTAGES),
 )  # fmt: skip
 DIGITS: Final = RunKind(
     DigitSession, DigitConfig, {name: DIGIT_PRESETS[name] for name in ("modern", "classic")},
-    lambda: texts.DIGIT_RUN_PRESETS, "images", ("learning_rate", "batch_size", "dropout"),
+    lambda: texts.DIGIT_RUN_PRESETS,
+    first=("learning_rate", "batch_size", "dropout"),
+    page=("learning_rate", "batch_size", "dropout", "epochs", "convolutions", "hidden", "augmentation", SEED),
     grace=1.0, patience=120.0,  # reading all test images takes long on a busy machine
 )  # fmt: skip

@@ -6,13 +6,12 @@ Live settings change at once. A change that needs a new run waits until it is ap
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import Field, asdict, dataclass, fields
 from functools import cache
 from operator import attrgetter
 from typing import Any, Final, Literal
 
-from ai.files.knobs import Knobs
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config, InForce
 from ai.training.experiments import sabotaged
@@ -24,7 +23,6 @@ from game.core.worker import PATIENCE
 KnobKind = Literal["slider", "switch", "words"]
 Named = tuple[str, str]  # a preset, and a sabotage or ""
 SEED: Final = "seed"
-REWARD: Final = "reward"  # the page of the reward weights
 WEIGHTS: Final = "reward_weights"
 _LADDER: Final = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)  # steps of a scale, times a power of ten
 _SHARES: Final = (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)  # factors of a weight's default
@@ -44,11 +42,9 @@ class KnobDescription:
     part: str  # name of the weight, if the field holds the reward weights
     label: str
     help: str
-    page: str  # group of knobs it is shown in
     live: bool  # whether it may change during a run
     kind: KnobKind
     stops: tuple[Any, ...]  # its possible values, from left to right on its track, or those of its words
-    advice: tuple[str, ...] = ()  # what comes of too little and of too much of it; for some
 
     @property
     def name(self) -> str:
@@ -79,9 +75,8 @@ def _described(of: type[Configuration], language: str) -> tuple[KnobDescription,
             made += [_weight(part, bool(item.metadata["live"])) for part in fields(RewardWeights)]
         elif stops := _stops(item):
             described = item.metadata
-            made.append(KnobDescription(item.name, "", label(item.name), texts.said(described["help"]),
-                             described["group"], described["live"], _kind(item), stops,
-                             texts.KNOB_ADVICE.get(item.name, ()) if of is Config else ()))  # fmt: skip
+            said = texts.said(described["help"])
+            made.append(KnobDescription(item.name, "", label(item.name), said, described["live"], _kind(item), stops))
     return tuple(made)
 
 
@@ -120,8 +115,7 @@ def _weight(part: Field[Any], live: bool) -> KnobDescription:
     default = float(getattr(RewardWeights(), part.name))
     stops = tuple(_rounded(share * default) for share in _SHARES) if default else _COSTS
     word, said = texts.REWARD_PARTS.get(part.name, (part.name, ""))
-    advice = texts.KNOB_WEIGHTS.get(part.name, ())
-    return KnobDescription(WEIGHTS, part.name, capital(word), said, REWARD, live, "slider", stops, advice)
+    return KnobDescription(WEIGHTS, part.name, capital(word), said, live, "slider", stops)
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:
@@ -164,11 +158,6 @@ def _rounded(value: float) -> float:
     return float(f"{value:.6g}") + 0.0  # without a minus before 0
 
 
-def pages(of: Iterable[KnobDescription]) -> list[str]:
-    """Return the names of the pages, in the order of their first knobs."""
-    return list(dict.fromkeys(knob.page for knob in of))
-
-
 @dataclass(frozen=True)
 class RunKind:
     """Kind of run: how it is started, and its knobs, presets and sabotages."""
@@ -177,10 +166,9 @@ class RunKind:
     of: type[Configuration]
     presets: Mapping[str, Configuration]
     words: Callable[[], Mapping[str, tuple[str, str]]]  # the label of each preset, and a sentence about it
-    seed_page: str  # the page of knobs that shows the seed
     first: tuple[str, ...]  # names of the few knobs to begin with
+    page: tuple[str, ...]  # and of those on one page, on demand; all others are for `--set` of the command
     sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
-    idle: Callable[[Any], Mapping[str, str]] = Knobs.unused  # settings without effect in a new run, and what causes it
     grace: float = 3.0  # seconds that a run has to end by itself when the window closes it
     patience: float = PATIENCE  # seconds for a turn of its worker
 
@@ -277,22 +265,7 @@ class RunSettings:
 
     def now(self, name: str) -> float | None:
         """Return the value in effect at this moment, such as a schedule's; None if it is the knob's own."""
-        return self.in_force.values.get(name) if self.in_force and name not in self.in_force.idle else None
-
-    def idle(self, name: str) -> str:
-        """Return a sentence why a knob has no effect, and which knob causes that; empty if it has an effect.
-
-        A live knob is judged for the current run, any other for the new run that it would need.
-        """
-        knob = self.knob_descriptions[name]
-        now = self.in_force.idle if self.in_force and knob.live else self.run_kind.idle(self.draft)
-        instead = now.get(knob.field)
-        if instead is None:
-            return ""
-        if sentence := texts.KNOBS_IDLE.get(knob.field):
-            return sentence
-        value = figure(getattr(self.config if self.in_force and knob.live else self.draft, instead))
-        return texts.KNOBS_IDLE_WITHOUT.format(other=label(instead), value=value)
+        return self.in_force.values.get(name) if self.in_force else None
 
     def turn(self, name: str, value: Any) -> None:
         """Set a knob; an invalid value changes nothing, and `problem` says why."""

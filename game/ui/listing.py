@@ -145,7 +145,6 @@ class ListRow(RowWidget):
 
     def _paint(self, canvas: Canvas) -> None:
         box = self.box
-        canvas.cover(canvas.rect(*box))  # the row that it stands in draws the ring
         if not self.rows:
             canvas.text(self._empty, (box.left, self.baseline(self.first)), size=self._size, colour=MUTE)
         for number, row in enumerate(self.rows[self.first : self.first + self.room], self.first):

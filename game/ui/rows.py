@@ -153,7 +153,6 @@ class ToggleRow(RowWidget):
             cursor.canvas.pill(box, mix(FAINT, NET, self._slid))
             knob = (box.left + half + (box.width - box.height) * self._slid, box.centery)
             cursor.canvas.dot(knob, half - 2.5, INK)
-            cursor.canvas.cover(cursor.canvas.rect(*box))
         words.text(self.label)
         if self._aside:
             words.gap(2)
@@ -232,7 +231,6 @@ class SliderRow(RowWidget):
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
             canvas.bar((left, middle - 1, right - left, 2), self.fraction, NET)
-            canvas.cover(canvas.rect(left, middle - 8, right - left, 16))
             for value in self._ticks:
                 x = left + self._fraction_of(value) * (right - left)
                 canvas.line((x, middle - 5), (x, middle + 5), MUTE)

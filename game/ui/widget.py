@@ -147,7 +147,6 @@ class Widget(UIElement):
         self.warmth = target if at_once else self.warmth + (target - self.warmth) * EASE
 
     def paint(self, canvas: Canvas) -> None:
-        canvas.cover(canvas.rect(*self.box))
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
 

@@ -58,7 +58,6 @@ def draw_craft(
         _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
     craft, corner = art.turned(image, view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view))
     surface.blit(shaded(craft, light + _FIRELIGHT * max(main, *jets)), corner)
-    canvas.look_at(craft.get_rect(topleft=corner))
     for side, force in enumerate(jets):
         if force > 0.06:
             outward = angle + (math.pi / 2 if side else -math.pi / 2)

@@ -138,7 +138,7 @@ class Scenery:
         Where a craft has left the area is a cross.
         """
         view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
-        self._factors.draw(canvas, view, pose)
+        self._factors.draw(canvas, view, pose, self.clear)
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return

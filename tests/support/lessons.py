@@ -1,14 +1,8 @@
 """Real lessons of small runs, for what shows them."""
 
-from dataclasses import replace
 from functools import cache
 
-import numpy as np
-
-from ai.digits.config import DIGIT_PRESETS
-from ai.digits.training import DigitTraining
 from ai.explain.agent_lesson import Lesson
-from ai.explain.digit_lesson import DigitLesson, explain_digit
 from ai.training.config import PRESETS, Config
 from ai.training.lander_session import LanderSession
 from tests.support.driver import Driver
@@ -37,17 +31,6 @@ def lesson_from(config: Config, turns: int = 60, slot: int = 0) -> Lesson:
     run.close()
     (lesson,) = [message for message in answer if isinstance(message, Lesson)]
     return lesson
-
-
-@cache
-def digit_lesson_of(name: str) -> DigitLesson:
-    """Return the lesson of an image of noise, of a run with that preset."""
-    rng = np.random.default_rng(0)
-    data = rng.random((60, 28, 28), np.float32), rng.integers(10, size=60).astype(np.uint8)
-    training = DigitTraining(replace(DIGIT_PRESETS[name], batch_size=8, held_out=12), 1, data)
-    for _ in range(3):
-        training.advance()
-    return explain_digit(training, 5)
 
 
 def shown(driver: Driver, frame: int) -> list[str]:

@@ -15,14 +15,12 @@ class Listener(Sound):
         super().__init__()
         self.played: list[str] = []
         self.volumes: list[float] = []
-        self.pans: list[float] = []
         self.loops: dict[str, float] = {}
 
-    def play(self, key: str, volume: float = 1.0, pan: float = 0.0) -> None:
+    def play(self, key: str, volume: float = 1.0) -> None:
         assert not INSTRUMENTS[key].loops
         self.played.append(key)
         self.volumes.append(volume)
-        self.pans.append(pan)
 
     def loop(self, key: str, volume: float) -> None:
         assert INSTRUMENTS[key].loops

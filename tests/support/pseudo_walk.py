@@ -39,7 +39,6 @@ from game.scenes.learn.memory import MemoryChapter
 from game.scenes.learn.path import FIRST
 from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import ChapterScene
-from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
 from game.shell.app import App
 from game.training.record import put_beside
@@ -50,7 +49,6 @@ from tests.game.tour.checkers import IN_HAND
 from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
-from tests.support.lessons import digit_lesson_of
 from tests.support.pen import pad_of, stroke
 from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
@@ -191,7 +189,6 @@ def reset(driver: Driver) -> None:
 
 OTHERS: dict[str, Make] = {
     "the tutorial": PlayScene,
-    "a digit's lesson": lambda context: LessonScene(context, digit_lesson_of("modern")),
     "modern inside": lambda context: DigitInsideScene(context, reader("modern"), seven()),
     "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
@@ -213,10 +210,9 @@ STATES = [
     Stop("TrainScene", "an experiment", experimented),
     Stop("TrainScene", "an earlier moment", rewound),
     Stop("DigitTrainingScene", "training to read", taught_to_read),
-    *(Stop("LessonScene", f"frame {number + 1}", frame(number)) for number in range(7)),
+    *(Stop("LessonScene", f"frame {number + 1}", frame(number)) for number in range(5)),
     Stop("PhysicsScene", "a law", measured),
     Stop("PhysicsStepScene", "a step", taken_apart),
-    *(Stop("a digit's lesson", f"frame {number + 1}", frame(number)) for number in range(7)),
     Stop("DigitsScene", "a digit", drawn),
     *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
     Stop("modern inside", "inside", partial(inside, 3)),

@@ -21,12 +21,10 @@ FILE = Path(__file__).parents[1] / "ai" / "training" / "broken_runs.npz"
 
 @dataclass
 class Recorded:
-    """A run as its history was at one moment, with what was known of its network."""
+    """A run as its history was at one moment."""
 
     history: History
     config: Config
-    dead_share: float | None = None
-    clipped_share: float | None = None
 
 
 @cache
@@ -58,7 +56,6 @@ def growing(name: str) -> Iterator[Recorded]:
     history.reward_scale = config.reward_scale
     for row in table:
         point = dict(zip(columns, row.tolist(), strict=True))
-        shares = [None if np.isnan(share) else share for share in (point.pop("dead_share"), point.pop("clipped_share"))]
         while left and point["decisions"] > left[0][0]:
             at, knob, value = left.pop(0)
             turned = config.turned(knob, value)
@@ -69,7 +66,7 @@ def growing(name: str) -> Iterator[Recorded]:
             history.append(Checkpoint(point["seconds"], at, success, np.zeros(3, np.float32)))
             checkpoint_at = max(point["decisions"] + 10_240, 2_500.0) if checkpoint_at else 2_500.0
         history.append(Point(**point))
-        yield Recorded(history, config, *shares)
+        yield Recorded(history, config)
 
 
 def recorded(name: str, until: float = np.inf) -> Recorded:

@@ -21,6 +21,7 @@ from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.scene import DigitsScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.learn.list import LearnScene
+from game.scenes.learn.one_file import OneFileScene
 from game.scenes.learn.path import FIRST, PATH
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
@@ -36,7 +37,7 @@ from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.choices import ChoicesScene
-from game.scenes.play.daily import DailyStart, DaysScene
+from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
@@ -76,9 +77,9 @@ SCREENS: dict[str, Make] = {
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
     "LearnScene": LearnScene,
     "ChapterScene": ChapterScene,
+    "OneFileScene": OneFileScene,
     "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
-    "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
     "NetworksScene": NetworksScene,

@@ -43,6 +43,7 @@ class LearnScene(PanelScene):
         self._list: ListRow | None = None
         self._choose_last()
         self.build()
+        self.form.focus(self.form.widgets[1])  # the list
 
     def _choose_last(self) -> None:
         """Choose the chapter that was left, or the first that is not done where that one is."""
@@ -59,6 +60,8 @@ class LearnScene(PanelScene):
     def describe(self, panel: Panel) -> None:
         panel.title(texts.LEARN_TITLE)
         panel.aside(texts.LEARN_LINE.format(done=sum(map(self._progress.done, PATH)), count=len(PATH)))
+        panel.gap(8)
+        panel.button(texts.ONE_FILE, partial(push, "one_file"), texts.ONE_FILE_ASIDE, colour=INK)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
         self._list = left.listing(

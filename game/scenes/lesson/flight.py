@@ -1,4 +1,4 @@
-"""Frames of a flight: the moment, with all that is sensed of it, and what happened then."""
+"""Frame of the flight: the moment in a picture, what each decision was paid, and what was sensed before and after."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.agent.agent import DeepQAgent
 from ai.agent.n_step import NStep
-from ai.agent.normalizer import Normalizer
 from ai.environment import Doubles, Floats
 from ai.explain.agent_lesson import Flown, Lesson
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
@@ -19,7 +17,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
-from game.explain.figures import decimal, number, points, what_is_sensed
+from game.explain.figures import decimal, points, what_is_sensed
 from game.explain.tables import Line, figure_rows, table
 from game.scenes.lesson.frame import Frame, in_points
 from game.ui.panel import Column
@@ -29,7 +27,7 @@ from game.world.lander import LANDER
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
 
-_LEAST: Final = 300.0  # width of a column
+_LEAST, _HIGH = 300.0, 170.0  # width of a column, height of the picture
 _ARROW: Final = 9.0  # points of the velocity's arrow for each metre per second
 _MOON: Final = 5
 _DIGITS: Final = (2, 2, 2, 2, 3, 3, 3)
@@ -55,30 +53,6 @@ def sensed(value: float, feature: int) -> str:
     return figure if unit is None else texts.LESSON_UNITS[unit].format(value=figure)
 
 
-def moment_frame(lesson: Lesson) -> Frame:
-    """Return the frame of the moment: a picture, and the nine inputs with their units."""
-    units, cache = in_units(lesson.cell.state).tolist(), PaintCache()
-    lines = [
-        Line((name, sensed(value, feature), number(given)), what_is_sensed(feature),
-             figure_rows((texts.LESSON_IN_UNITS, sensed(value, feature)),
-                  (texts.LESSON_SCALED.format(scale=f"{OBSERVATION_SCALE[feature]:g}"),
-                   number(float(lesson.cell.state[feature]))),
-                  (texts.LESSON_GIVEN, number(given))))
-        for feature, (name, value, given) in enumerate(zip(texts.INPUTS, units, lesson.state.tolist(), strict=True))
-    ]  # fmt: skip
-
-    def draw(canvas: Canvas, box: pygame.FRect) -> None:
-        cache.draw(canvas, box, (), partial(_paint, box.width, units, int(lesson.cell.action)))
-
-    def describe(column: Column) -> None:
-        left, right = column.beside((1, 1), _LEAST)
-        left.picture(lambda width: width * VIEW_SIZE[1] / VIEW_SIZE[0], draw)
-        right.add(table((texts.LESSON_INPUTS, texts.LESSON_IN_UNITS, texts.LESSON_GIVEN), lambda: lines))
-
-    functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)
-    return Frame(texts.LESSON_FRAMES["moment"], sensed(units[1], 1), functions, "rows", describe)
-
-
 def _paint(width: float, units: list[float], action: int, canvas: Canvas) -> None:
     """Paint the moon with the lander, its engines and an arrow for its velocity, on a sheet of that width."""
     share = width / VIEW_SIZE[0]
@@ -98,13 +72,19 @@ def _paint(width: float, units: list[float], action: int, canvas: Canvas) -> Non
 
 
 def happened_frame(lesson: Lesson) -> Frame:
-    """Return the frame of what happened: the action and the pay of each decision, and the state after."""
+    """Return the frame of what happened: the moment, action and pay of each decision, and the state after."""
     flown, count, discount = lesson.flown, int(lesson.cell.steps), lesson.config.discount
     pay = float(lesson.cell.reward) / lesson.config.reward_scale
     before, after = (in_units(each).tolist() for each in (lesson.cell.state, lesson.cell.next_state))
+    cache = PaintCache()
+
+    def draw(canvas: Canvas, box: pygame.FRect) -> None:
+        cache.draw(canvas, box, (), partial(_paint, box.width, before, int(lesson.cell.action)))
 
     def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
+        left.picture(_HIGH, draw)
+        left.gap(6)
         lines = _decisions(flown, discount) if flown else []
         words = texts.LESSON_RETURN.format(discount=f"{discount:g}", count=count)
         whole = Line((words, *[""] * (2 if flown else 0), points(pay)), texts.LESSON_RETURN_HELP, lit=True)

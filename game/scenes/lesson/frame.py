@@ -26,6 +26,7 @@ class Frame:
         sentence: the field's term for what happens here, then plain words for it.
         figure: the one figure that stands for it on its card.
         functions: the functions whose lines are shown beside it.
+        changed: set when there are other rows than before; the scene describes them anew.
         begin: variable that the line sets which is lit at first; empty for any.
 
     """
@@ -41,6 +42,7 @@ class Frame:
     ) -> None:
         self.name, self.sentence, self._describe = words[0], sentence or words[1], describe
         self.figure, self.functions, self.begin = figure, tuple(functions), begin
+        self.changed = False
 
     def describe(self, column: Column) -> None:
         """Add the rows."""
@@ -84,57 +86,43 @@ def in_points_of_reward(line: Line, scale: float) -> Line:
     })  # fmt: skip
 
 
-class CodeWalk:
-    """Walk through the lines that ran for one frame, those of its functions.
+class LitCode:
+    """The code of one frame: the lines that ran of its functions, and the one that made what the frame shows.
 
-    Where there are none, its first function is shown, with no line lit. The walk begins at the last line that sets the
-    frame's `begin`, a variable as it is recorded.
+    Where none ran, its first function is shown, with no line lit.
 
     Attributes:
-        lines: the lines, in the order in which they ran.
-        index: number of the current one.
+        line: the lit line, the last that set the frame's `begin`, a variable as it is recorded; None where none ran.
 
     """
 
     def __init__(self, lines: Iterable[Line], frame: Frame) -> None:
         self._functions = {function.__qualname__: function for function in frame.functions}
-        self.lines = tuple(line for line in lines if line.function in self._functions)
-        # Without such a line, begin where numbers are set, past the head of the function.
-        sets = [place for place, line in enumerate(self.lines[:-1]) if place and line.values]
-        named = (place for place in reversed(sets) if frame.begin in self.lines[place].values)
-        self.index = next(named, next(iter(sets), 0))
-
-    @property
-    def line(self) -> Line | None:
-        """The current line; None where no line was recorded."""
-        return self.lines[self.index] if self.lines else None
+        ran = [line for line in lines if line.function in self._functions]
+        # Without such a line, it is where numbers are set first, past the head of the function.
+        sets = [place for place, line in enumerate(ran[:-1]) if place and line.values]
+        named = (place for place in reversed(sets) if frame.begin in ran[place].values)
+        index = next(named, next(iter(sets), 0))
+        self.line = ran[index] if ran else None
+        self._before = ran[: index + 1]
 
     @property
     def source(self) -> Source | None:
-        """Source of the current line's function; None where the program was installed without it."""
+        """Source of the lit line's function; None where the program was installed without it."""
         return source_of(self._functions[self.line.function] if self.line else next(iter(self._functions.values())))
 
     def describe(self, column: Column) -> None:
-        """Add the listing, and what goes from line to line."""
-        last = len(self.lines) - 1
+        """Add the listing."""
         if self.source is None:
             column.aside(texts.LESSON_NO_SOURCE)
         else:
             add_listing(column, _LISTING, self._shown)
-        if last > 0:
-            column.slider(
-                texts.LESSON_LINE, self.index, (0, last), self._go, step=1,
-                figure=lambda value: texts.LESSON_LINE_OF.format(number=round(value) + 1, count=last + 1),
-            )  # fmt: skip
-
-    def _go(self, index: float) -> None:
-        self.index = round(index)
 
     def _shown(self) -> tuple[Source, int | None, dict[int, str]]:
         """Return the source, the lit line, and beside lines what this call has set there so far, in a loop the last."""
         source, notes = self.source, dict[int, str]()
         assert source is not None
-        for line in reversed(self.lines[: self.index + 1]):
+        for line in reversed(self._before):
             if self.line is None or line.function != self.line.function:
                 continue
             if line.number == source.lines[0][0]:

@@ -1,4 +1,4 @@
-"""Frames that show a network: the values that flow through it, and the gradient, of which an optimizer makes a step."""
+"""Frame of the network: the values that flow through it, the gradient, and the optimizer's step for one weight."""
 
 from __future__ import annotations
 
@@ -8,54 +8,74 @@ from typing import Final
 
 import numpy as np
 
-from ai.explain.recorder import Function
-from ai.nn import Adam, Array
+from ai.agent.network import make_optimizer
+from ai.explain.agent_lesson import Lesson
+from ai.explain.learning_step import backward_functions, forward_functions
+from ai.nn import Adam
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, SMALL
 from game.explain.figures import number, points, signed
-from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
 from game.explain.tables import Line, figure_rows, table
+from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep, Weight
 from game.ui.panel import Column
 
-_HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "gradients": 190.0}
+_FORWARD, _BACK = 340.0, 190.0  # heights: a step is written below the way back
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
-_MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
-_UNNAMED: Final = (" " * 32,)  # keeps the room of a name free, for the legend below
 _LEAST: Final = 300.0  # width of a column
-_RANKS: Final = 24  # weights to choose from, the steepest first
 
 
 class NetworkFrame(Frame):
-    """Frame with a drawing of the network: values that flow forward, or the slopes that flow back."""
+    """Frame of the way forward and back: the values that flow through the network, then the slopes that flow back.
 
-    show: Show = "activations"
+    Attributes:
+        back: which of the ways is shown: 0 the values, 1 the slopes of the whole batch, 2 those of this memory alone.
 
-    def __init__(
-        self, words: Sequence[str], figure: str, sentence: str, functions: Sequence[Function], step: LearningStep
-    ) -> None:
-        super().__init__(words, figure, functions, sentence=sentence)
-        self.step, self._network = step, step.network.copy()
-        names = step.inputs if len(step.inputs) <= _MOST_NAMED else _UNNAMED
-        self.view = NetworkView((0, 0, 700, _HEIGHTS[self.show]), names, step.outputs)
-        self.view.reads_out, self.view.show, self.view.output_scale = False, self.show, step.scale
-        self.flow(step.taken.gradient)
+    """
 
-    def flow(self, gradient: Array) -> None:
-        """Show a gradient (parameters,) as the one that flows back."""
-        self._network.gradients[:] = gradient
+    def __init__(self, lesson: Lesson, step: LearningStep) -> None:
+        words, action = texts.LESSON_FRAMES["network"], int(lesson.cell.action)
+        self._value = points(float(lesson.predicted[action]) / step.scale)
+        functions = (*forward_functions(step.network), *backward_functions(step.network, make_optimizer(lesson.config)))
+        sentence = words[1].format(action=said_action(action), value=self._value)
+        if (best := int(lesson.predicted.argmax())) != action:
+            higher = points(float(lesson.predicted[best]) / step.scale)
+            sentence = f"{sentence} {texts.LESSON_NOT_THE_BEST.format(action=said_action(best), value=higher)}"
+        super().__init__(words, f"{texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))}", functions,
+                         sentence=sentence)  # fmt: skip
+        self.step, self.back, self._network = step, 0, step.network.copy()
+        self.view = NetworkView((0, 0, 700, _FORWARD), step.inputs, step.outputs)
+        self.view.reads_out, self.view.output_scale = False, step.scale
+        self.weight = step.steepest()
+        self.turn(0)
+
+    def turn(self, back: int) -> None:
+        """Show the values, or one of the two gradients."""
+        taken = self.step.taken
+        self.back, self.view.show = back, "gradients" if back else "activations"
+        self.changed = True
+        self._network.gradients[:] = taken.share if back == 2 else taken.gradient
         self.view.set(self._network, self.step.observation)
 
     def describe(self, column: Column) -> None:
+        ways = [words.format(count=self.step.examples) for words in texts.LESSON_WAYS]
+        column.choice("", ways, self.back, self.turn, SMALL)
         column.add(self._write_network)
+        if self.back and self.weight:
+            column.gap(8)
+            left, right = column.beside((2, 3), _LEAST)
+            left.text(texts.LESSON_DOWNHILL[self.step.carries_on], size=SMALL)
+            left.text(self._title(), size=SMALL, colour=HUMAN)
+            left.text(texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
+            right.add(table((), self._parts))
 
     def _write_network(self, cursor: Cursor) -> None:
         cursor.gap(10)
-        box = cursor.take(_HEIGHTS[self.show])
+        box = cursor.take(_BACK if self.back else _FORWARD)
         if cursor.canvas is None:
             self.view.place(box)
         else:
@@ -68,8 +88,10 @@ class NetworkFrame(Frame):
         self.view.update()
 
     def _draw(self, canvas: Canvas) -> None:
-        """Draw the network; each unit explains itself."""
+        """Draw the network; each unit explains itself, and the steepest weight is amber where its ends are shown."""
         self.view.draw(canvas)
+        if self.back and self.weight and len(ends := self._ends(self.weight)) == 2:
+            canvas.line(ends[0], ends[1], HUMAN, 1.5)
         for column, centres in enumerate(self.view.centres):
             for place, (x, y) in enumerate(centres):
                 unit = int(self.view.columns[column].units[place])
@@ -105,67 +127,26 @@ class NetworkFrame(Frame):
             rows.append((texts.LESSON_OTHERS.format(count=others), signed(rest)))
         rows.append((texts.NETWORK_VIEW_BIAS, signed(float(link.bias[unit]))))
         rows += [(texts.LESSON_STAGES.get(kind, kind), number(float(values[unit]))) for kind, values in stages]
-        if column == len(step.weights) and step.scale != 1.0:
+        if column == len(step.weights):
             scaled = points(float(stages[-1][1][unit]) / step.scale)
             rows.append((texts.LESSON_IN_POINTS.format(scale=f"{step.scale:g}"), scaled))
         return f"{texts.LESSON_SUM}\n{figure_rows(*rows)}"
 
-
-class GradientFrame(NetworkFrame):
-    """Frame of the gradient; the optimizer's step for one weight, which the player picks, is written out.
-
-    Attributes:
-        alone: whether this example's own share is shown, in place of the whole batch's gradient.
-        rank: which weight is picked, by the size of its slope: 0 for the steepest.
-
-    """
-
-    show = "gradients"
-
-    def __init__(self, words: Sequence[str], functions: Sequence[Function], step: LearningStep) -> None:
-        length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
-        sentence = f"{words[1]} {texts.LESSON_DOWNHILL[step.carries_on]}"
-        super().__init__(words, length, sentence, functions, step)
-        self.alone, self.rank, self._steepest = False, 0, step.steepest(_RANKS)
-
-    def describe(self, column: Column) -> None:
-        whose = [words.format(count=self.step.examples) for words in texts.LESSON_WHOSE]
-        column.choice("", whose, int(self.alone), self.show_alone, SMALL)
-        super().describe(column)
-        column.gap(8)
-        if self._steepest:
-            left, right = column.beside((2, 3), _LEAST)
-            left.slider(texts.LESSON_PICK_WEIGHT, self.rank + 1, (1, len(self._steepest)), self._pick_rank, step=1,
-                        figure=lambda rank: f"{rank:.0f}")  # fmt: skip
-            left.text(self._title, size=SMALL, colour=HUMAN)
-            left.text(lambda: texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
-            right.add(table((), self._parts))
-
-    def _pick_rank(self, rank: float) -> None:
-        self.rank = round(rank) - 1
-
-    @property
-    def weight(self) -> Weight:
-        """The weight that is picked."""
-        return self._steepest[self.rank]
-
-    def show_alone(self, alone: int) -> None:
-        """Show this example's own share of the gradient, or the whole batch's."""
-        self.alone = bool(alone)
-        self.flow(self.step.taken.share if alone else self.step.taken.gradient)
-
     @property
     def uphill(self) -> bool:
-        """Whether the picked weight moves up its slope."""
+        """Whether the steepest weight moves up its slope."""
+        assert self.weight is not None, "without one nothing is asked"
         index, taken = self.weight.place, self.step.taken
         return float(taken.gradient[index]) * float(taken.taken[index]) < 0
 
     def _title(self) -> str:
+        assert self.weight is not None, "without one nothing is asked"
         optimizer = texts.LESSON_OPTIMIZERS.get(self.step.optimizer, self.step.optimizer)
         return texts.LESSON_STEP_OF.format(optimizer=optimizer, weight=self.step.weight_name(self.weight))
 
     def _parts(self) -> list[Line]:
-        """Return the way from the slope of the picked weight to its new value."""
+        """Return the way from the slope of the steepest weight to its new value."""
+        assert self.weight is not None, "without one nothing is asked"
         step, index, words = self.step, self.weight.place, texts.LESSON_STEP_PARTS
         taken = step.taken
         slope, share, moved, old, new = (
@@ -188,12 +169,6 @@ class GradientFrame(NetworkFrame):
         found.append(_part(rule, signed(moved), rate=number(taken.learning_rate)))
         found.append(_part(words["value"], number(new), before=number(old)))
         return found
-
-    def _draw(self, canvas: Canvas) -> None:
-        """Draw the network, with the picked weight in amber where its ends are shown."""
-        super()._draw(canvas)
-        if self._steepest and len(ends := self._ends(self.weight)) == 2:
-            canvas.line(ends[0], ends[1], HUMAN, 1.5)
 
 
 def _part(words: Sequence[str], figure: str, **figures: str) -> Line:

@@ -8,17 +8,15 @@ from typing import Final
 import pygame
 
 from ai.explain.agent_lesson import Lesson
-from ai.explain.digit_lesson import DigitLesson
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.explain.explained import Explained
-from game.explain.lesson_door import LessonDoor
 from game.input.controls import Command
 from game.scenes.lesson.alone import AloneFrame
-from game.scenes.lesson.frame import CodeWalk, Frame
+from game.scenes.lesson.frame import Frame, LitCode
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -92,9 +90,7 @@ class Cards(RowWidget):
 
 
 class LessonScene(PanelScene):
-    """Lesson scene, of a learning step of the agent or of a digit network.
-
-    With the door to a digit network's run, the lessons of other images of the batch can be had.
+    """Lesson scene, of a learning step of the agent.
 
     Attributes:
         lesson: the learning step.
@@ -104,13 +100,13 @@ class LessonScene(PanelScene):
 
     """
 
-    def __init__(self, context: Context, lesson: Lesson | DigitLesson, door: LessonDoor | None = None) -> None:
+    def __init__(self, context: Context, lesson: Lesson) -> None:
         super().__init__(context)
-        self._door, self.current, self.in_code = door, 0, False
+        self.current, self.in_code = 0, False
         self.explained = Explained()
         self._take(lesson)
 
-    def _take(self, lesson: Lesson | DigitLesson) -> None:
+    def _take(self, lesson: Lesson) -> None:
         """Take a lesson apart; the number of the frame that is shown stays."""
         self.lesson, self.parts = lesson, parts_of(lesson)
         self.build()
@@ -128,7 +124,7 @@ class LessonScene(PanelScene):
         return self.parts[self.current].frame
 
     @property
-    def code(self) -> CodeWalk:
+    def code(self) -> LitCode:
         return self.parts[self.current].code
 
     # Rows
@@ -147,9 +143,6 @@ class LessonScene(PanelScene):
 
     def _whose(self) -> str:
         lesson = self.lesson
-        if isinstance(lesson, DigitLesson):
-            digit = int(lesson.labels[lesson.step.row])
-            return texts.LESSON_DIGIT_WHEN.format(digit=digit, step=lesson.taken + 1)
         if lesson.flown is None:
             return texts.LESSON_WHEN.format(decisions=lesson.decisions)
         return texts.LESSON_WHOSE_MOMENT.format(
@@ -159,22 +152,15 @@ class LessonScene(PanelScene):
     # What can be done
 
     def actions(self) -> Table:
-        another = [Action(Command.RETRY, self._another, texts.LESSON_ANOTHER_IMAGE)] if self._door else []
         return [
             self.form.moves,
             Action(Command.NEXT, lambda: self._turn(1), texts.LESSON_HINT_FRAME),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             Action(Command.STEP, lambda: self._turn(1)),
             Action(Command.CHOICES, self.show_code, texts.STEP_CODE[self.in_code], gamepad=Command.MODE),
-            *another,
             self.explained.action(),
             self.form.goes_back(texts.HINT_BACK),
         ]
-
-    def _another(self) -> None:
-        """Ask for the lesson of the next image of the batch."""
-        if self._door and isinstance(self.lesson, DigitLesson):
-            self._door.another(self.lesson)
 
     def _turn(self, direction: int) -> None:
         self.show(min(max(self.current + direction, 0), len(self.parts) - 1))
@@ -200,9 +186,10 @@ class LessonScene(PanelScene):
         return super().handle_event(event)
 
     def update(self) -> Transition | None:
-        if self._door and (lesson := self._door.next_lesson()):
-            self._take(lesson)
         self.frame.update(self.context.settings.reduced_motion)
+        if self.frame.changed:
+            self.frame.changed = False
+            self.build()
         self.explained.update()
         return super().update()
 

@@ -1,4 +1,4 @@
-"""One learning step of any network, as the frames on networks, gradients and optimizers need it, and what it pulled."""
+"""One learning step of the agent, as the frames on network, gradient and optimizer need it, and what it pulled."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ import numpy as np
 
 from ai.explain.inspection import Link, links
 from ai.explain.learning_step import Step
-from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, NeuralNetwork
-from ai.nn.layers import DropoutLayer
+from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from game.core import texts
 
-_SUM, _NORMALISED, _DROPPED = "sum", "normalised", "dropout"
+_SUM, _NORMALISED = "sum", "normalised"
 # What optimizers remember of the slopes so far, by its name in `Optimizer.remembers`.
 _RUNNING: Final = ("gradient_sum", "velocity")
 
@@ -37,7 +36,7 @@ class LearningStep:
         taken: the step as it was recorded.
         observation: (inputs,) that the network was given.
         inputs, outputs: names of the network's ends.
-        scale: size of one shown unit in the unit of the network's outputs: one point of reward, or 1.
+        scale: size of one point of reward in the unit of the network's outputs.
         optimizer: name of the optimizer.
         examples: number of examples in the batch.
 
@@ -57,26 +56,17 @@ class LearningStep:
         """For each link, the name and the values (units,) of each layer from it up to the next link."""
         found: list[list[tuple[str, Array]]] = []
         for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
-            if _joins_units(layer):
+            if isinstance(layer, FullyConnectedLayer):
                 found.append([(_SUM, values)])
             elif isinstance(layer, LayerNormalisation) and found:
                 found[-1].append((_NORMALISED, values))
-            elif isinstance(layer, DropoutLayer) and found:
-                found[-1].append((_DROPPED, values))
             elif isinstance(layer, ActivationLayer) and found:
                 found[-1].append((str(layer.activation.name), values))
         return found
 
     def given(self, link: int) -> Array:
         """Return what a link is given: what the layers below make of the observation, (units,)."""
-        if link:
-            return self.stages[link - 1][-1][1]
-        given = np.asarray(self.observation, float).ravel()
-        for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
-            if _joins_units(layer):
-                break
-            given = np.asarray(values, float).ravel()
-        return given
+        return self.stages[link - 1][-1][1] if link else np.asarray(self.observation, float)
 
     @cached_property
     def weights(self) -> list[Link]:
@@ -85,19 +75,19 @@ class LearningStep:
         twin.values = self.taken.values_before
         return [Link(link.weights.copy(), link.bias.copy(), link.gradient) for link in links(twin)]
 
-    def steepest(self, most: int) -> list[Weight]:
-        """Return the weights with the steepest slopes, in order; none of a dueling layer, which mixes several."""
+    def steepest(self) -> Weight | None:
+        """Return the weight with the steepest slope; none of a dueling layer, which mixes several."""
         found, first, link = list[Weight](), 0, 0
         for layer in self.network.layers:
-            if _joins_units(layer):
+            if isinstance(layer, FullyConnectedLayer):
                 inputs, outputs = layer.shapes["weights"]
-                slopes = np.abs(self.taken.gradient[first : first + inputs * outputs])
-                best = np.argsort(-np.nan_to_num(slopes, nan=np.inf), kind="stable")[:most].tolist()
+                slopes = np.abs(np.nan_to_num(self.taken.gradient[first : first + inputs * outputs]))
+                at = int(slopes.argmax())
                 if not isinstance(layer, DuelingLayer):
-                    found += [Weight(link, at // outputs, at % outputs, first + at) for at in best]
+                    found.append(Weight(link, at // outputs, at % outputs, first + at))
                 link += 1
             first += sum(parameter.value.size for parameter in layer.parameters)
-        return sorted(found, key=lambda weight: -abs(float(self.taken.gradient[weight.place])))[:most]
+        return max(found, key=lambda weight: abs(float(self.taken.gradient[weight.place])), default=None)
 
     def unit_name(self, column: int, unit: int) -> str:
         """Return the name of a unit of a column, by its number in the layer."""
@@ -165,8 +155,3 @@ class Pulls(NamedTuple):
         pulls = [-float(share @ part) / (derivative or 1.0) for part in (own, together - own, whole - together)]
         own, others, earlier = pulls
         return cls(own, others, earlier, moved - sum(pulls))
-
-
-def _joins_units(layer: Layer) -> bool:
-    """Whether a layer is one of the links between units: a convolution joins images."""
-    return isinstance(layer, FullyConnectedLayer) and not isinstance(layer.inputs, tuple)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import date
+from datetime import date, timedelta
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -39,7 +39,7 @@ _PAD, _ABOVE, _BETWEEN = 4.0, 28.0, 20.0  # points around a word, above the titl
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
 ROWS: Final = ("play", "watch", "train", "digits", "learn", "settings", "quit")
 # What can be flown, by its key in `texts.FLIGHTS`, and the routes.
-FLIGHTS: Final = {"free": "play", "day": "days", "missions": "missions", "descent": "descent", "logbook": "logbook"}
+FLIGHTS: Final = {"free": "play", "day": "day", "missions": "missions", "descent": "descent", "logbook": "logbook"}
 
 
 class _OverMoon(PanelScene):
@@ -139,10 +139,11 @@ class FlightsScene(_OverMoon):
         entries = records.entries()
         gold = {entry.course for entry in entries if entry.medal == 3 and entry.alone}
         attempt = days.attempts.get(self._today.isoformat())
+        self._yesterday = days.attempts.get((self._today - timedelta(days=1)).isoformat())
         best = best_descent(entries)[0]
         self._figures = {
             "free": self._free(ladder_rung(settings, entries)),
-            "day": texts.FLIGHTS_FLOWN if attempt else texts.DAYS_NOT_FLOWN,
+            "day": attempt.result if attempt else texts.DAYS_NOT_FLOWN,
             "missions": texts.FLIGHTS_GOLD.format(gold=len(gold & MISSIONS.keys()), count=len(MISSIONS)),
             "descent": texts.DESCENT_LEGS.format(count=best) if best else "",
             "logbook": texts.FLIGHTS_COUNT.format(count=len(entries)) if entries else "",
@@ -164,7 +165,11 @@ class FlightsScene(_OverMoon):
 
     def _line(self, name: str) -> str:
         """Return what it is, where there is room for that."""
-        return texts.FLIGHTS[name][1] if self.context.reading().view.height > _ROOMY else ""
+        if self.context.reading().view.height <= _ROOMY:
+            return ""
+        before = self._yesterday if name == "day" else None
+        line = texts.FLIGHTS[name][1]
+        return f"{line} {texts.DAYS_YESTERDAY.format(result=before.result)}" if before else line
 
     def _figure(self, name: str) -> str:
         return self._figures[name]

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from game.audio.instruments import GROUPS, altitude_key
+from game.audio.instruments import GROUPS
 from game.core import catalogue, texts
 from game.core.names import reason
 from game.core.scene import Push, Transition, push
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
 GROUPS_OF_SETTINGS: Final = ("picture", "sound", "controls", "flights")
 _VOLUMES: Final = ("master", *GROUPS)
-# Sample sound played when a volume is changed, besides the slider's click and sounds that play anyway.
-_SAMPLES: Final = {"effects": "touchdown", "altitude": altitude_key(9)}
 _LEAST: Final = 380.0  # points of a column
 _SCENE: Final = 190.0  # points of the height of the scene in the player's colours
 _METRE: Final = 26.0  # points in it
@@ -108,10 +106,9 @@ class SettingsScene(PanelScene):
         if self.context.sound.problem:
             left.text(texts.SOUND_PROBLEM)
         for number, group in enumerate(_VOLUMES):
-            column, label = left if number < 3 else right, texts.SOUND_GROUPS[group]
+            column, label = left if number < 2 else right, texts.SOUND_GROUPS[group]
             value, change = getattr(self.context.settings, f"{group}_volume"), partial(self._set_volume, group)
-            aside = texts.SOUND_ALTITUDE if group == "altitude" else ""
-            column.slider(label, value, (0.0, 1.0), change, step=0.1, figure=_loudness, aside=aside)
+            column.slider(label, value, (0.0, 1.0), change, step=0.1, figure=_loudness)
 
     def _describe_controls(self, left: Column, right: Column) -> None:
         left.button(texts.BINDINGS_OPEN, lambda: push("bindings"), texts.BINDINGS_LINE, colour=INK)
@@ -147,8 +144,8 @@ class SettingsScene(PanelScene):
 
     def _set_volume(self, group: str, value: float) -> None:
         self._set(f"{group}_volume", value)
-        if group in _SAMPLES:
-            self.context.sound.play(_SAMPLES[group])
+        if group == "effects":  # of which nothing plays here otherwise
+            self.context.sound.play("touchdown")
 
     # Progress
 

@@ -1,8 +1,12 @@
 """Flights that other screens lead to, by their routes."""
 
+from datetime import date
+
+from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.flight.replay import FlightReplay
 from game.scenes.play.challenge import ContinuedFlight, against, dated
+from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
@@ -12,6 +16,11 @@ from game.ui.context import Context
 def tutorial(context: Context) -> PlayScene:
     """Fly the first flight, again if need be."""
     return PlayScene(context, 0, challenge=Tutorial())
+
+
+def day(context: Context) -> PlayScene:
+    """Fly the start of today."""
+    return PlayScene(context, challenge=DailyStart(date.today(), Days(context.user_dir)))
 
 
 def descent(context: Context) -> PlayScene:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from ai.explain.inspection import NetworkHealth
 from ai.training.config import Config
 from ai.training.hints import Adviser
 from game.core import texts
@@ -45,10 +44,10 @@ class Advice:
         """Name of the hint that is shown; empty without one."""
         return self.adviser.shown.name if self.adviser.shown and self.shown else ""
 
-    def follow(self, health: NetworkHealth) -> None:
+    def follow(self) -> None:
         """Diagnose the run again; call it when there is news."""
         run = self._run
-        self.adviser.advise(run.history, run.config, health.dead_share, health.clipped_share)
+        self.adviser.advise(run.history, run.config)
 
     def silence(self, quiet: bool) -> None:
         """Hide the hint while other changes wait to be applied or undone: one question at a time."""

@@ -29,6 +29,7 @@ from game.ui.charts import Charts
 from game.ui.curves import run_style
 from game.ui.plotting import Limits
 
+LANDINGS: Final = "success"  # the chart of the share that lands
 SCORE: Final = "mean_return"  # the chart of what a flight earns
 FEW_CHARTS: Final = 2
 STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
@@ -81,7 +82,7 @@ def _held_out(history: History) -> Line:
 
 
 LANDER_CHARTS: Final = {
-    "success": ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
+    LANDINGS: ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
     SCORE: ChartKind(
         _column(SCORE), "{:z.0f}", second=_expected, words=lambda: (texts.TRAIN_EXPECTED, texts.TRAIN_SCORES)
     ),
@@ -100,11 +101,11 @@ DIGIT_CHARTS: Final = {
 }
 
 
-class ChartCaptions:
-    """One caption for each chart, read together with the chart's number and painted in the same frame as that.
+class LandingsCaption:
+    """Caption of the chart of landings, read together with its number and painted in the same frame as that.
 
     Attributes:
-        shown: caption of each chart that has one, by its name.
+        shown: the caption; None without one.
 
     """
 
@@ -113,21 +114,19 @@ class ChartCaptions:
 
     def clear(self) -> None:
         """Reset for another run."""
-        self.shown: dict[str, Caption] = {}
-        self._since: dict[str, float] = {}
+        self.shown: Caption | None = None
+        self._since = 0.0
 
-    def read(self, chart: str, history: History, config: Config, hint: str) -> str:
-        """Return a chart's caption, beside the hint that is shown, by its name; empty where no rule is sure."""
-        now = float(history["seconds"][-1]) if len(history) else 0.0
-        before = self.shown.pop(chart, None)
-        stays = before.name if before and now - self._since[chart] < STAY else ""
-        found = caption(chart, RecentCurves(history, config), hint, stays)
+    def read(self, history: History, config: Config, hinted: bool) -> str:
+        """Return the caption beside a hint, or without one; empty where no rule is sure."""
+        now, before = float(history["seconds"][-1]) if len(history) else 0.0, self.shown
+        stays = before.name if before and now - self._since < STAY else ""
+        self.shown = found = caption(RecentCurves(history, config), hinted=hinted, shown=stays)
         if found is None:
             return ""
         if before is None or before.name != found.name:
-            self._since[chart] = now
-        self.shown[chart] = found
-        return texts.CHART_CAPTIONS[chart][found.name].format(**found.values).replace("-", "−")
+            self._since = now
+        return texts.CHART_CAPTIONS[found.name].format(**found.values)
 
 
 @dataclass(frozen=True)
@@ -248,9 +247,9 @@ class TrainingCharts(Charts):
         return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
     @property
-    def landed(self) -> tuple[str, ...]:
-        """Share that lands of each run, in percent, as the first chart was last painted; a dash before any is known."""
-        return self._all[0].painted_latest
+    def landed(self) -> tuple[int | None, ...]:
+        """Percent of each run that land, as the first chart was last painted; None before a flight has ended."""
+        return tuple(None if share is None else round(share) for share in self._all[0].painted_latest)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and what is said of them as it was when they were painted."""

@@ -17,7 +17,6 @@ from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import Pointer, TrainingScene
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
@@ -63,7 +62,6 @@ class DigitTrainingScene(TrainingScene):
     def _build(self) -> None:
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = TrainingCharts(DIGIT_CHARTS)
-        self.lessons = LessonDoor(self.run, self.context.note)
         change = partial(self.run.ask, "change")
         settings = RunSettings(DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
         self.knobs = KnobsPanel(self.form, settings)
@@ -133,7 +131,6 @@ class DigitTrainingScene(TrainingScene):
         self.switch(column, ALL_KNOBS)
         column.line()
         column.words([
-            (texts.LESSON_WHY, self.lessons.ask),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
 
@@ -166,11 +163,11 @@ class DigitTrainingScene(TrainingScene):
             self.matrix.set(run.confusion)
         if run.alive and len(history):
             rate, before = float(history["learning_rate"][-1]), self.knobs.settings.in_force
-            if before is None or before.values["learning_rate"] != rate or before.idle != run.config.unused():
-                self.knobs.show_in_force(InForce({"learning_rate": rate}, run.config.unused()))
+            if before is None or before.values["learning_rate"] != rate:
+                self.knobs.show_in_force(InForce({"learning_rate": rate}))
         looked = self.charts.look(history, Beside(run.earlier))
         self.charts.update(at_once=self._settings.reduced_motion, turn=not looked)
-        return self._finish_update() or self.lessons.update()
+        return self._finish_update()
 
     # The run
 

@@ -9,7 +9,6 @@ import numpy as np
 import pygame
 
 from ai.agent.network import build_network
-from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
 from ai.training.history import PARTS
@@ -34,7 +33,6 @@ class Inside:
     Attributes:
         view: shows `network`, None without a run; `shown` is the message that it came with.
         paid: points that each part of the reward has paid per flight, (len(PARTS),).
-        health: diagnosis of the network's units and numbers.
 
     """
 
@@ -49,7 +47,6 @@ class Inside:
         self.shown: NetworkState | None = None
         self._seen: NetworkState | None = None
         self.paid = np.zeros(len(PARTS))
-        self.health = NetworkHealth()
 
     @property
     def opened(self) -> bool:
@@ -64,12 +61,6 @@ class Inside:
     def place(self, display: pygame.FRect) -> None:
         """Move to another box."""
         self.view.place((display.left + _MARGIN, display.top + 20, display.width - 2 * _MARGIN, display.height - 36))
-
-    def examine(self, state: NetworkState) -> None:
-        """Show the network that the run reports, and see how healthy it is."""
-        self.show(state)
-        if self.shown is state and self.network is not None:
-            self.health.look(self.network, state.observation, self._run.config.gradient_clip)
 
     def show(self, state: NetworkState | None, row: int = -1) -> None:
         """Show a network, perhaps of an earlier moment, and what was paid at that row of the history."""

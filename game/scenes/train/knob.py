@@ -16,7 +16,7 @@ import pygame
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.run_settings import KnobDescription, figure
 from game.ui.widget import RowWidget, mix
@@ -24,7 +24,6 @@ from game.ui.widget import RowWidget, mix
 _LABELS, _FIGURES = 150.0, 62.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0
 _GAP: Final = 14.0  # between words
-_DIM: Final = mix(FAINT, MUTE, 0.45)  # of a knob that has no effect
 _NOTE: Final = LABEL - 1.5  # size of text over a track
 _CLEAR: Final = 9.0  # from the middle of the handle to that text
 
@@ -39,7 +38,6 @@ class Knob(RowWidget):
         home: the preset's value.
         waits: whether the value is yet to be applied.
         now: the value in force at this moment of a run, where it differs; else None.
-        idle: why the knob has no effect; empty if it has one.
 
     """
 
@@ -52,21 +50,19 @@ class Knob(RowWidget):
         enter: Callable[[], None] = lambda: None,
     ) -> None:
         super().__init__((0, 0, 1, 1), description.label)
-        self.description, self.help = description, description.help
+        self.description = description
         self.value = self.home = None
         self.waits = self.changed = False
         self.now: float | None = None
-        self.idle = ""
         self._turn, self._enter = turn, enter
         self._named = False  # the mouse was pressed on the name
 
-    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
+    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None) -> None:
         """Show what the panel says."""
-        self.value, self.home, self.waits, self.idle = value, home, waits, idle
+        self.value, self.home, self.waits = value, home, waits
         self.changed = bool(value != home)
         rounded = None if now is None else float(f"{now:.3g}")
         self.now = None if rounded is None or figure(rounded) == figure(value) else rounded
-        self.help = idle or self.description.help
 
     @property
     def live(self) -> bool:
@@ -75,8 +71,8 @@ class Knob(RowWidget):
 
     @property
     def colour(self) -> Colour:
-        """Colour of the knob: blue, grey if it takes a new run, amber if it waits, dim if it has no effect."""
-        return HUMAN if self.waits else _DIM if self.idle else NET if self.live else MUTE
+        """Colour of the knob: blue, grey if it takes a new run, amber if it waits."""
+        return HUMAN if self.waits else NET if self.live else MUTE
 
     @property
     def track(self) -> tuple[float, float]:
@@ -115,10 +111,9 @@ class Knob(RowWidget):
         if canvas:
             if self.changed:
                 canvas.dot((cursor.left - 11, top + _HEIGHT / 2), 2.5, HUMAN)
-            colour = mix(_DIM if self.idle else mix(MUTE, INK, 0.7), INK, self.warmth)
+            colour = mix(mix(MUTE, INK, 0.7), INK, self.warmth)
             room = self.track[0] - cursor.left - 10
             canvas.text(self.label, (cursor.left, top + _HEIGHT / 2 + 4.5), size=SMALL, colour=colour, room=room)
-            canvas.cover(canvas.rect(*self.box))
         self.put(cursor, top + _HEIGHT / 2)
 
     def put(self, cursor: Cursor, middle: float) -> None:
@@ -165,16 +160,14 @@ class SliderKnob(Knob):
         handle, home = (left + self._at(value) * width for value in (self.value, self.home))
         canvas.line((home, middle - 5), (home, middle + 5), MUTE, 1, 0.8)
         canvas.bar((left, middle - 1, width, 2), self._at(self.value), colour)
-        radius, whole = 5 + self.warmth, self.live and not self.idle
-        canvas.dot((handle, middle), radius, INK if whole else mix(_DIM if self.idle else MUTE, INK, self.warmth))
-        if not whole:
+        radius = 5 + self.warmth
+        canvas.dot((handle, middle), radius, INK if self.live else mix(MUTE, INK, self.warmth))
+        if not self.live:
             canvas.dot((handle, middle), radius - 1.6, PANEL)
         if self.now is not None:
             x = left + self._at(self.now) * width
             canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
             self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle)
-        elif self.idle:
-            self._put_beside(canvas, texts.KNOB_IDLE, handle, handle)
         place, room = (cursor.right, middle + 4.5), _FIGURES - 8
         canvas.text(figure(self.value), place, size=SMALL, colour=colour, align="right", tabular=True, room=room)
 

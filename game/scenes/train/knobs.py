@@ -1,4 +1,4 @@
-"""Panel of a run's settings: few knobs first and all on demand, presets, and what comes of turning them."""
+"""Panel of a run's settings: few knobs first, a page of them on demand, presets, and what comes of turning them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ from game.training.run_settings import (
     RunSettings,
     figure,
     label,
-    pages,
 )
 from game.ui.form import Form
 from game.ui.hints import Hint, HintRow
@@ -28,6 +27,7 @@ from game.ui.panel import Column
 
 _UNDERLINE: Final = 2.0
 _SEEDS: Final = tuple(range(100))
+_FIRST, _LAST = "learning_rate", "final_learning_rate"  # the first acts until its schedule is over, then the last
 
 
 class KnobsPanel:
@@ -41,18 +41,16 @@ class KnobsPanel:
         settings: what they set, and what waits for a new run.
 
     Attributes:
-        every: whether all knobs are shown.
+        every: whether the whole page of knobs is shown.
 
     """
 
     def __init__(self, form: Form, settings: RunSettings) -> None:
         self._form, self.settings = form, settings
         self._run_kind = run_kind = settings.run_kind
-        chance = KnobDescription(SEED, "", label(SEED), texts.KNOB_SEED, run_kind.seed_page, False, "slider", _SEEDS)
+        chance = KnobDescription(SEED, "", label(SEED), texts.KNOB_SEED, False, "slider", _SEEDS)
         self._descriptions = {each.name: each for each in (*run_kind.knob_descriptions, chance)}
-        self.pages = pages(run_kind.knob_descriptions)
         self.every = False
-        self._page = 0
         self._knobs: dict[str, Knob] = {}
 
     @property
@@ -71,18 +69,18 @@ class KnobsPanel:
         return self._run_kind.said(self.settings.holds)[0]
 
     @property
-    def first(self) -> dict[str, str]:
-        """The few knobs to begin with, or those that act in their place, each with the one whose label it has."""
-        spent, acting = in_force.idle if (in_force := self.settings.in_force) else {}, dict[str, str]()
-        for name in self._run_kind.first:
-            acting.setdefault(spent.get(name, name), name)
-        return acting
+    def shown(self) -> tuple[str, ...]:
+        """Names of the knobs that are shown: few, or a page of them, without one whose time is over."""
+        if (in_force := self.settings.in_force) is None or _LAST not in in_force.values:
+            return self._run_kind.page if self.every else self._run_kind.first
+        names = self._run_kind.page if self.every else (_LAST, *self._run_kind.first)
+        return tuple(name for name in names if name != _FIRST)
 
     @property
     def key(self) -> Hashable:
         """What decides which rows there are."""
         settings = self.settings
-        return self._page, tuple(self.first), settings.holds, settings.changed, self._asks, bool(settings.waiting)
+        return self.shown, settings.holds, settings.changed, self._asks, bool(settings.waiting)
 
     @property
     def _asks(self) -> bool:
@@ -126,22 +124,18 @@ class KnobsPanel:
                 knob.display(settings.draft_seed, settings.draft_seed, waits=waits)
                 continue
             value, home = map(knob.description.read, (settings.draft, settings.home))
-            knob.display(value, home, waits=waits, now=settings.now(name), idle=settings.idle(name))
+            knob.display(value, home, waits=waits, now=settings.now(name))
 
     # Rows
 
     def describe(self, column: Column) -> None:
-        """Add the preset's name, and the knobs: few, or a page of all."""
+        """Add the preset's name, and the knobs."""
         column.add(self._write_name)
-        names, kind = self.first, self._run_kind
+        kind = self._run_kind
         if self.every:
             others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
             column.words([(kind.said((base, ""))[0], partial(self.load, base)) for base in others])
-            tabs = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self.pages]
-            column.choice("", tabs, self._page, self._turn_page, LABEL)
-            page = self.pages[self._page]
-            names = {name: name for name, each in self._descriptions.items() if each.page == page}
-        for name in names:
+        for name in self.shown:
             column.widget(self._knob(name))
         self.show()
 
@@ -194,12 +188,9 @@ class KnobsPanel:
             cursor.aside(self._run_kind.said(settings.holds)[1])
 
     def _write_help_of(self, knob: Knob, cursor: Cursor) -> None:
-        cursor.aside(knob.help)
+        cursor.aside(knob.description.help)
         if knob.description.field == WEIGHTS and self.settings.running:
             cursor.styled(texts.KNOBS_NEW_PAY, SMALL, HUMAN)
-        for heading, advice in zip(texts.KNOB_ADVICE_NAMES, knob.description.advice, strict=False):
-            if advice and self.every:
-                cursor.aside(f"{heading}: {advice}")
         if not knob.live:
             cursor.aside(texts.KNOBS_NEW_RUN)
         if knob.changed:
@@ -212,9 +203,6 @@ class KnobsPanel:
             cursor.gap(20)
 
     # What the widgets ask for
-
-    def _turn_page(self, page: int) -> None:
-        self._page = page
 
     def _focus_answer(self) -> None:
         """Move the focus to the button that applies, if there is one."""

@@ -1,4 +1,4 @@
-"""Experiments: parts to take away and knobs to turn, a guess, and what came of one beside its healthy twin."""
+"""Experiments: parts to take away, a guess, and what came of one beside its healthy twin."""
 
 from __future__ import annotations
 
@@ -13,12 +13,9 @@ from ai.training.experiments import (
     MEASURED,
     SABOTAGES,
     VERDICTS,
-    Experiment,
     Flown,
     Verdict,
     differences,
-    experiment_of,
-    experiments,
     judged_at,
     verdict,
 )
@@ -29,8 +26,7 @@ from game.core.catalogue import capital
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
 from game.scenes.train.knobs import KnobsPanel
 from game.training.run import TrainingRun
-from game.training.run_kind import LANDERS
-from game.training.run_settings import KnobDescription, figure, label
+from game.training.run_settings import figure, label
 from game.ui.panel import Column
 
 FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
@@ -39,11 +35,15 @@ _WAVERS: Final = 10  # percent by which one that has recovered may fall behind i
 
 
 class Chosen(NamedTuple):
-    """An experiment with its name on the screen, and the player's guess; None if there was none."""
+    """A sabotage, and the player's guess; None if there was none."""
 
-    experiment: Experiment
-    name: str
+    sabotage: str
     guess: Verdict | None = None
+
+    @property
+    def name(self) -> str:
+        """Its name on the screen."""
+        return texts.SABOTAGES[self.sabotage][0]
 
 
 class Laboratory:
@@ -60,7 +60,7 @@ class Laboratory:
         knobs: the settings that an experiment changes.
         start: starts the experiment.
         leave: ends the split view, and keeps the experiment if that is true.
-        landed: returns what both land now, in percent, as it stands on the screen.
+        landed: returns what both land now, in whole percent, as it stands on the screen.
 
     """
 
@@ -68,9 +68,9 @@ class Laboratory:
         self,
         run: TrainingRun,
         knobs: KnobsPanel,
-        start: Callable[[Experiment], None],
+        start: Callable[[str], None],
         leave: Callable[[bool], None],
-        landed: Callable[[], Sequence[str]],
+        landed: Callable[[], Sequence[int | None]],
     ) -> None:
         self._run, self._knobs, self._start, self._leave, self._landed = run, knobs, start, leave, landed
         self.page: Literal["", "picks", "guess", "result"] = ""
@@ -106,9 +106,7 @@ class Laboratory:
             "differs": listed_differences(run.config, twin.config),
             "figures": figures if self.came else "",
             "came": came_words(self.came, chosen.guess) or ("" if twin.problem else early or texts.LAB_TOO_EARLY),
-            "measured": measured(chosen.experiment.sabotage)
-            if self.came and chosen.experiment.sabotage and run.config == PRESETS[MEASURED]
-            else "",
+            "measured": measured(chosen.sabotage) if self.came and run.config == PRESETS[MEASURED] else "",
         }
 
     def update(self, frame: int) -> None:
@@ -129,36 +127,25 @@ class Laboratory:
         column.aside(texts.LAB_INTRODUCED)
         for name in SABOTAGES:
             word, what = texts.SABOTAGES[name]
-            column.button(word, partial(self._ask, name, word), what, colour=INK)
-        for knob in (each for each in LANDERS.knob_descriptions if each.name in self._knobs.first):
-            column.aside(texts.LAB_TURN.format(knob=knob.label))
-            found = experiments(self._knobs.config, knob.name)
-            column.words([(experiment_word(each, knob), partial(self._try, each, knob)) for each in found])
+            column.button(word, partial(self._ask, name), what, colour=INK)
         column.button(texts.BACK, self.close)
 
-    def _ask(self, sabotage: str, word: str) -> None:
+    def _ask(self, sabotage: str) -> None:
         """Ask for a guess at what a sabotage will do."""
-        self.chosen, self.page = Chosen(experiment_of(self._knobs.config, sabotage), word), "guess"
-
-    def _try(self, experiment: Experiment, description: KnobDescription) -> None:
-        """Fly a knob's experiment beside the run."""
-        name = texts.LAB_NAME.format(knob=description.label, change=experiment_word(experiment, description))
-        self._begin(Chosen(experiment, name))
+        self.chosen, self.page = Chosen(sabotage), "guess"
 
     def _fly(self, guess: Verdict | None) -> None:
         """Fly the sabotage that was chosen, with a guess or without one."""
         assert self.chosen is not None
-        self._begin(self.chosen._replace(guess=guess))
-
-    def _begin(self, chosen: Chosen) -> None:
-        self.chosen, self.came, self._recovered = chosen, None, False
-        self._start(chosen.experiment)
+        self.chosen = self.chosen._replace(guess=guess)
+        self.came, self._recovered = None, False
+        self._start(self.chosen.sabotage)
 
     def _guess(self, column: Column) -> None:
         assert self.chosen is not None
         column.caption(texts.LAB_BEFORE)
         column.text(self.chosen.name, size=TITLE)
-        column.aside(texts.SABOTAGES[self.chosen.experiment.sabotage][1])
+        column.aside(texts.SABOTAGES[self.chosen.sabotage][1])
         column.gap()
         column.text(texts.LAB_ASK, size=SMALL)
         for kind in VERDICTS:
@@ -170,7 +157,7 @@ class Laboratory:
         """Propose a run with that part missing, without a twin."""
         assert self.chosen is not None
         self.close()
-        self._knobs.load(sabotage=self.chosen.experiment.sabotage)
+        self._knobs.load(sabotage=self.chosen.sabotage)
 
     def _result(self, column: Column) -> None:
         assert self.chosen is not None
@@ -193,13 +180,13 @@ class Laboratory:
     def _sentence(self, subject: str) -> str:
         assert self.chosen is not None
         if subject == "why":
-            return why(self.came, self.chosen.experiment.sabotage, recovered=self._recovered)
+            return why(self.came, self.chosen.sabotage, recovered=self._recovered)
         return self.said[subject]
 
     def _figures(self) -> str:
         """What both landed at the verdict, and what they land now."""
         landed = self._landed()
-        if len(landed) < 2 or not all(map(str.isdigit, landed)):
+        if len(landed) < 2 or None in landed:
             return self.said["figures"]
         return f"{self.said['figures']} {texts.LAB_FIGURES.format(other=landed[1], healthy=landed[0])}".lstrip()
 
@@ -211,33 +198,19 @@ def came_words(came: Verdict | None, guess: Verdict | None) -> str:
     return f"{texts.LAB_CAME_OF[came]} {texts.LAB_AS_GUESSED if came == guess else texts.LAB_NOT_AS_GUESSED}"
 
 
-def has_recovered(landed: Sequence[str], *, was: bool = False) -> bool:
+def has_recovered(landed: Sequence[int | None], *, was: bool = False) -> bool:
     """Whether an experiment lands as often as its twin by now, given both shares in percent; one that did may waver."""
-    if len(landed) < 2 or not all(map(str.isdigit, landed)):
+    healthy, other = landed if len(landed) == 2 else (None, None)
+    if healthy is None or other is None:
         return was
-    healthy, other = map(int, landed[:2])
     return 0 < healthy <= other + (_WAVERS if was else 0)
 
 
 def why(came: Verdict | None, sabotage: str, *, recovered: bool = False) -> str:
     """Say what the part is for that was taken away; no cause where it was not missed, or is missed no more."""
-    if not sabotage or came in (None, "as_well"):
+    if came in (None, "as_well"):
         return ""
     return texts.LAB_RECOVERED if recovered else texts.SABOTAGE_WHY[sabotage]
-
-
-def experiment_word(experiment: Experiment, description: KnobDescription) -> str:
-    """Return the label of an experiment beside its knob."""
-    if experiment.kind in ("times", "divided"):
-        words = texts.LAB_TIMES if experiment.kind == "times" else texts.LAB_DIVIDED
-        return words.format(factor=float(f"{experiment.amount:.2g}"))
-    if plain := texts.LAB_PLAIN.get(description.name):
-        less = experiment.amount < (description.stops[0] + description.stops[-1]) / 2
-        return plain["low" if less else "high"]
-    if description.kind == "slider" and experiment.amount == 0:
-        return figure(False)
-    value = figure(experiment.amount)
-    return value if description.kind != "slider" else texts.LAB_TO.format(value=value)
 
 
 def listed_differences(before: Config, after: Config) -> str:
@@ -259,10 +232,8 @@ def measurements() -> dict[str, Any]:
 
 
 def measured(name: str) -> str:
-    """Say what was measured of a sabotage, beside the preset that nothing was taken from; empty for nothing."""
+    """Say what was measured of a sabotage, beside the preset that nothing was taken from."""
     found = measurements()
-    if name not in found["shares"]:
-        return ""
     other, healthy = ([100 * part for part in found["shares"][each]] for each in (name, MEASURED))
     figures = dict(zip(("other", "low", "high", "healthy", "least", "most"), (*other, *healthy), strict=True))
     return texts.LAB_MEASURED.format(decisions=found["decisions"], seeds=found["seeds"], **figures)

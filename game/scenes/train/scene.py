@@ -11,7 +11,7 @@ import numpy as np
 import pygame
 
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import Experiment, differences
+from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Transition, push
@@ -20,7 +20,7 @@ from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
-from game.scenes.train.charts import SCORE, Beside, ChartCaptions, TrainingCharts
+from game.scenes.train.charts import LANDINGS, SCORE, Beside, LandingsCaption, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.laboratory import Laboratory
@@ -58,7 +58,7 @@ class TrainScene(TrainingScene):
 
     def _build(self) -> None:
         run = self.run
-        self.charts, self.captions = TrainingCharts(), ChartCaptions()
+        self.charts, self.caption = TrainingCharts(), LandingsCaption()
         settings = RunSettings(PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
         self.knobs = KnobsPanel(self.form, settings)
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
@@ -87,11 +87,10 @@ class TrainScene(TrainingScene):
         landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
         count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
         line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
-        share = run.history["success"][row]
-        figure = "" if np.isnan(share) else f"{100 * share:.0f}"
-        painted = "".join(self.charts.landed[:1])
-        if self.rewind.moment is None and painted.isdigit():  # one number for the title and its chart
-            figure = painted
+        share = 100 * run.history["success"][row]
+        if self.rewind.moment is None and self.charts.landed and self.charts.landed[0] is not None:
+            share = self.charts.landed[0]  # one number for the title and its chart
+        figure = "" if np.isnan(share) else f"{share:.0f}"
         return TrainingStatus(title, line, figure, landed)
 
     @property
@@ -202,7 +201,7 @@ class TrainScene(TrainingScene):
         self._go_to_moment()
         if self._news and run.alive and not looked:  # in a frame of its own
             self._news, looked = False, True
-            self._advice.follow(self.inside.health)
+            self._advice.follow()
         looked |= self.charts.look(run.history, self._beside, self._caption)
         self.landers.update(still)
         self._frame += 1
@@ -220,7 +219,7 @@ class TrainScene(TrainingScene):
         if run.network_state is None or run.network_state is network_state:
             return False
         if self.rewind.moment is None:
-            self.inside.examine(run.network_state)
+            self.inside.show(run.network_state)
         self._news = run.alive and len(run.history) > 0
         return True
 
@@ -236,12 +235,13 @@ class TrainScene(TrainingScene):
         run = self.run
         if chart == SCORE and self._beside.paid_otherwise:
             return texts.LAB_PAID_OTHERWISE
-        return self.captions.read(chart, run.history, run.config, self._advice.hint) if run.alive else ""
+        hinted = bool(self._advice.hint)
+        return self.caption.read(run.history, run.config, hinted) if run.alive and chart == LANDINGS else ""
 
     # The run
 
     def _clear(self) -> None:
-        for part in (self.landers, self.rewind, self._advice, self.charts, self.captions, self.inside):
+        for part in (self.landers, self.rewind, self._advice, self.charts, self.caption, self.inside):
             part.clear()
 
     @property
@@ -290,10 +290,10 @@ class TrainScene(TrainingScene):
 
     # An experiment
 
-    def _split(self, experiment: Experiment) -> None:
-        """Fly an experiment beside a healthy twin; the run that goes on is put among the player's networks."""
+    def _split(self, sabotage: str) -> None:
+        """Fly a sabotage beside a healthy twin; the run that goes on is put among the player's networks."""
         config, seed = self.knobs.config, self.knobs.seed
-        changed = experiment.applied(config)
+        changed = sabotaged(config, sabotage)
         if self.run.twin is None and not self._keep():
             return
         self._was_running = False

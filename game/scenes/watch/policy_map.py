@@ -94,8 +94,7 @@ class PolicyMap:
         if not self.on or self.cells is None:
             return
         (left, top), (right, bottom) = view.points(self.cells.places[[0, -1], [0, -1]]).tolist()
-        with canvas.unnoted():  # stars shine through it
-            self._picture.draw(canvas, (left, top, right - left, bottom - top), self.cells, self._paint)
+        self._picture.draw(canvas, (left, top, right - left, bottom - top), self.cells, self._paint)
 
     def _begin(self, env: LanderEnv, slot: int, work: int) -> None:
         """Begin a new map, unless nothing has changed since the last."""

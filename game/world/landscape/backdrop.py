@@ -69,7 +69,7 @@ class Backdrop:
 
         `earth` is where the Earth's middle stands, in points.
         """
-        self.paint(canvas.surface, camera.view(canvas.scale, alpha).filling(canvas), time, earth, canvas.words)
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha).filling(canvas), time, earth)
 
     def paint(
         self,
@@ -77,11 +77,8 @@ class Backdrop:
         view: View | None = None,
         time: float = 0.0,
         earth: tuple[float, float] = EARTH,
-        words: Sequence[pygame.Rect] = (),
     ) -> None:
         """Fill a surface of this backdrop's size, as seen in a view; without one, as at rest.
-
-        No star is drawn inside `words`, in pixels: it would be read as a dot, or as a speck on a panel.
 
         Distant layers keep their size at any zoom. They move up and down with the horizon, and sideways by a small
         share of the camera's movement (parallax).
@@ -100,7 +97,7 @@ class Backdrop:
         if down > 0:  # no sky was painted there, but it is as dark as its top rows
             surface.blit(far.sky, (0, 0), (0, 0, self.size[0], down))
         if self._look.stars:
-            far.stars.draw(surface, (across, down), time, words)
+            far.stars.draw(surface, (across, down), time)
         if self._look.earth:
             self._draw_earth(surface, (far.air, far.disc), earth, across, down)
         margin = MARGIN * self.size[0]

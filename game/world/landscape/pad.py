@@ -35,9 +35,6 @@ def draw_pad(
     pool, reach = _pool(_SOFT * view.painted_per_metre, width, colour)
     pool.draw(canvas.surface, view, (x - reach[0], floor - 0.05 + reach[1]), pygame.BLEND_RGB_ADD)
     deck.draw(canvas.surface, view, (x + corner[0], top + corner[1]))
-    left, above = view.pixel(x - width / 2, top + 2 * _LAMP)
-    right, below = view.pixel(x + width / 2, floor)
-    canvas.look_at((left, above, right - left, below - above))
     pulse = 0.86 + 0.14 * math.sin(1.7 * time)
     for side in (-1, 1):
         lamp = view.point(centre[0] + side * (width / 2 - 0.08), centre[1] + _LAMP)

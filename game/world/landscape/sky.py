@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +12,6 @@ import pygame
 from ai.environment import Doubles, Ints
 from game.drawing.paint import PIECE, Picture, Sheet, bell, blocks, clouds, light, mix, ramp
 from game.drawing.paint_cache import Steps
-from game.drawing.sky import beside
 from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 from game.world.landscape.themes import HORIZON, Theme
 
@@ -137,41 +135,28 @@ class NearStars:
         sprites = [[light(star * share) for share in shares] for star in stars]
         self._rows = [sprites[kind] for kind in kinds.tolist()]
         self._half = np.array([row[0].get_width() // 2 for row in self._rows])
-        self._seen: Ints = np.zeros(0, np.intp)  # the stars that the last words left free,
-        self._seen_for: Any = None  # and those words, and where the view was then
         self._stamps: list[tuple[pygame.Surface, tuple[int, int]]] = []  # what was drawn last, and for which moment
         self._stamped_for: Any = None
 
-    def draw(
-        self, surface: pygame.Surface, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect] = ()
-    ) -> None:
-        """Add the stars to the sky, except behind text.
+    def draw(self, surface: pygame.Surface, shift: tuple[float, float], time: float) -> None:
+        """Add the stars to the sky.
 
         `shift` is how far the foreground has moved sideways and the horizon up, in pixels.
         """
         tick = 0 if self._still else round(_TWINKLES * time)
-        moment = words, round(4 * self._deepest * shift[0]), round(shift[1]), tick
+        moment = round(4 * self._deepest * shift[0]), round(shift[1]), tick
         if moment != self._stamped_for:  # to a quarter of a pixel
-            self._stamped_for, self._stamps = moment, self._stamped(shift, tick / _TWINKLES, words)
+            self._stamped_for, self._stamps = moment, self._stamped(shift, tick / _TWINKLES)
         surface.fblits(self._stamps, pygame.BLEND_RGB_ADD)
 
-    def _stamped(
-        self, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect]
-    ) -> list[tuple[pygame.Surface, tuple[int, int]]]:
-        """Return the pictures of the stars that words leave free, each with its corner."""
+    def _stamped(self, shift: tuple[float, float], time: float) -> list[tuple[pygame.Surface, tuple[int, int]]]:
+        """Return the pictures of the stars, each with its corner."""
         place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
-        seen_for = words, round(self._deepest * shift[0]), round(shift[1])
-        if seen_for != self._seen_for:  # in less than a pixel, no star comes behind a word
-            self._seen, self._seen_for = np.flatnonzero(beside(place, words)), seen_for
-        seen = self._seen
-        corners = np.rint(place[seen] - self._half[seen, None]).astype(np.intp).tolist()
-        level = np.full(len(seen), self.LEVELS - 2)
+        corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()
+        level = np.full(len(place), self.LEVELS - 2)
         if not self._still:
-            level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase[seen] + self._rate[seen] * time)).astype(int)
-        return [
-            (self._rows[star][bright], corner)
-            for star, bright, corner in zip(seen.tolist(), level.tolist(), corners, strict=True)
-        ]
+            level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
+        return [(row[bright], corner) for row, bright, corner in zip(self._rows, level.tolist(), corners, strict=True)]
 
 
 def _star(kind: int, unit: float) -> Picture:

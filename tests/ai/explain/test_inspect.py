@@ -3,10 +3,8 @@ from itertools import product
 import numpy as np
 
 from ai.agent.network import build_network
-from ai.explain.inspection import NetworkHealth, dead_units, links, traces
+from ai.explain.inspection import links, traces
 from ai.nn import (
-    ActivationFunctions,
-    ActivationLayer,
     ConvolutionLayer,
     CostFunctions,
     FlattenLayer,
@@ -47,7 +45,6 @@ def test_numbers_that_are_none_pass_through() -> None:
     assert np.isnan(traces(network, OBSERVATION)[-1]).all()
     network.values[:] = 1e38
     traces(network, OBSERVATION)
-    assert dead_units(network, OBSERVATION) <= 1
 
 
 def test_images_are_traced_from_the_first_stage_of_units() -> None:
@@ -60,34 +57,3 @@ def test_images_are_traced_from_the_first_stage_of_units() -> None:
     image = np.random.default_rng(0).random((6, 6, 1), np.float32)
     assert [stage.shape for stage in traces(network, image)] == [(32,), (3,)]
     assert len(links(network)) == 1
-
-
-def test_dead_units_are_counted_exactly() -> None:
-    network = (
-        NeuralNetwork(*CostFunctions.use_mse())
-        .add_layer(FullyConnectedLayer(2, 4))
-        .add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
-        .add_layer(FullyConnectedLayer(4, 1))
-    )
-    weights, bias = network.layers[0].parameters
-    weights.value[:] = [[1, -1, 0, 0], [0, 0, 0, 1]]
-    bias.value[:] = [0, 0, -1, -5]
-    observations = np.array([[1.0, 0.0], [-1.0, 2.0]])
-    assert dead_units(network, observations) == 0.5  # the third never answers, the fourth not to these
-    assert dead_units(network, [[1.0, 0.0]]) == 0.75
-    assert dead_units(network, [[1.0, 9.0], [-1.0, 0.0]]) == 0.25
-    assert dead_units(network_of(activation="tanh"), OBSERVATION) == 0  # these cannot die
-    assert dead_units(network_of(), np.zeros((0, 9))) == 0
-
-
-def test_health_counts_gradients_that_were_cut_and_units_that_are_silent() -> None:
-    network, health = network_of(), NetworkHealth()
-    network.values[:] = 0  # every unit is silent
-    for number in range(64):
-        assert (health.clipped_share is None) == (number < 40)
-        assert health.dead_share is None
-        network.gradients[:] = 0
-        network.gradients[0] = 0.9995 if number % 4 else 0.99
-        health.look(network, OBSERVATION, 1.0)
-    assert health.clipped_share == 0.75
-    assert health.dead_share == 1.0

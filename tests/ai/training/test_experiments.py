@@ -1,37 +1,12 @@
-"""Experiments on one knob, and what comes of one beside its healthy twin: as recorded of real runs."""
+"""Sabotages, and what comes of one beside its healthy twin: as recorded of real runs."""
 
 import pytest
 
 from ai.agent.schedule import exploration_of_each
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import SABOTAGES, Flown, differences, experiment_of, experiments, sabotaged, verdict
+from ai.training.experiments import SABOTAGES, Flown, sabotaged, verdict
 from ai.training.loop import Training
 from tests.support.recordings import recorded
-
-MODERN = PRESETS["modern"]
-KNOBS = ("learning_rate", "epsilon_end", "discount", "gradient_clip", "n_step", "tau")
-
-
-def test_only_the_knob_differs_or_what_its_sabotage_takes_away():
-    for config in PRESETS.values():
-        for name in KNOBS:
-            for experiment in experiments(config, name):
-                changed = experiment.applied(config)
-                if experiment.sabotage:
-                    assert changed == sabotaged(config, experiment.sabotage)
-                    assert experiment_of(config, experiment.sabotage).applied(config) == changed
-                else:
-                    assert set(differences(config, changed)) == {name}
-
-
-def test_a_hundred_times_more_or_less_where_the_scale_is_logarithmic_and_the_ends_elsewhere():
-    rate = {each.kind: each for each in experiments(MODERN, "learning_rate")}
-    assert rate["times"].sabotage == "rate_times_100"
-    assert rate["divided"].changes == {"learning_rate": 3e-5}
-    assert [each.amount for each in experiments(MODERN, "discount")] == [0.8, 0.9999]
-    assert [each.sabotage for each in experiments(MODERN, "epsilon_end")] == ["no_exploration", ""]
-    assert experiments(MODERN, "priority_exponent") == [], "it changes nothing"
-
 
 HEALTHY = recorded("modern healthy")
 

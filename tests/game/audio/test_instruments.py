@@ -1,11 +1,10 @@
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from game.audio import synth
-from game.audio.instruments import GROUPS, INSTRUMENTS, RUNGS, altitude_key, rung
+from game.audio.instruments import GROUPS, INSTRUMENTS
 from game.audio.synth import RATE
 from game.core.settings import Settings
 
@@ -54,7 +53,7 @@ def test_a_loop_has_no_seam(key):
 
 
 def test_a_sound_is_the_same_every_time():
-    for key in ("engine", "altitude_3"):
+    for key in ("engine", "choose"):
         assert np.array_equal(INSTRUMENTS[key].render(key) / 32_767, sound(key))
 
 
@@ -72,22 +71,13 @@ def test_each_jet_is_heard_on_its_own_side():
     assert right[1] > 2 * right[0]
 
 
-def test_the_altitude_tone_climbs_evenly():
-    notes = [rung(number) for number in range(RUNGS)]
-    assert all(1.05 < high / low < 1.2 for low, high in pairwise(notes))
-    for number in range(0, RUNGS, 5):
-        assert (
-            band(altitude_key(number), 0.97 * notes[number], 1.03 * notes[number]) > 0.4
-        )  # the rest are its overtones
-
-
 def test_the_busiest_moment_does_not_clip():
-    """Even if the greatest samples of all met, at the volumes the game comes with; the altitude tone at full."""
-    settings = Settings(altitude_volume=1.0)
+    """Even if the greatest samples of all met, at the volumes the game comes with."""
+    settings = Settings()
     moments = [
-        ("engine", "jet_left", "pad", "too_tilted", "altitude_0"),
+        ("engine", "jet_left", "pad", "too_tilted"),
         ("engine", "jet_left", "pad", "touchdown", "contact"),
-        ("crash", "pad", "too_fast", "altitude_0", "engine"),
+        ("crash", "pad", "too_fast", "engine"),
         ("landed", "touchdown", "contact", "pad", "choose"),
     ]
     for keys in moments:

@@ -27,7 +27,7 @@ COAST, LEFT, RIGHT, MAIN = range(4)
 class Wants(Weighs):
     """A network that thinks one action is worth 10, another one a bit less, and the others nothing."""
 
-    def __init__(self, best: int = MAIN, good: int = LEFT, worth: float = 9.98) -> None:
+    def __init__(self, best: int = MAIN, good: int = LEFT, worth: float = 9.99) -> None:
         self.values = np.zeros(6, np.float32)
         self.values[[best, good]] = 10.0, worth
         self.asked = 0

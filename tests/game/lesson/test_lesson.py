@@ -11,22 +11,21 @@ from ai.agent.decision import in_points
 from ai.explain.agent_lesson import Lesson
 from ai.explain.inspection import Link, links
 from ai.explain.learning_step import Value
-from ai.nn.costs import COSTS
 from game.core import texts
 from game.explain.figures import number, percent, points
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.flight import in_units, sensed
 from game.scenes.lesson.frame import case_of
 from game.scenes.lesson.frames import parts_of
-from game.scenes.lesson.network import GradientFrame, NetworkFrame
+from game.scenes.lesson.network import NetworkFrame
 from game.scenes.lesson.scene import LessonScene
-from game.scenes.lesson.update import AfterFrame, ErrorFrame
+from game.scenes.lesson.update import AfterFrame
 from tests.support.driver import Driver
-from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of, shown
+from tests.support.lessons import SMALL, lesson_from, lesson_of, shown
 
 Open = Callable[..., Driver]
-NAMES = ("alone", "moment", "values", "happened", "target", "error", "gradient", "after")
-ALONE, MOMENT, VALUES, HAPPENED, TARGET, ERROR, GRADIENT, AFTER = range(len(NAMES))
+NAMES = ("alone", "happened", "target", "network", "after")
+ALONE, HAPPENED, TARGET, NETWORK, AFTER = range(len(NAMES))
 
 
 @pytest.fixture(params=sorted(SMALL))
@@ -88,7 +87,7 @@ def test_all_frames_by_keys_by_mouse_and_by_gamepad(modern: Driver):
     assert scene.current == AFTER
     modern.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
     assert scene.current == AFTER - 1
-    modern.resize((800, 600))  # in which cards stand in two lines
+    modern.resize((640, 480))  # in which cards stand in two lines
     modern.key(pygame.K_F1)
     modern.frames(2)
     assert scene.cards._boxes[-1].top > scene.cards._boxes[0].bottom
@@ -100,13 +99,13 @@ def test_the_code_is_folded_until_asked_for_and_lit_where_the_frame_is_made(driv
     words = shown(driver, TARGET)
     assert not any("def targets" in word for word in words)
     driver.key(pygame.K_c)
-    words = shown(driver, ERROR)
+    words = shown(driver, AFTER)
     assert driver.top.in_code
     line = driver.top.code.line
     assert str(line.number) in words
     text = dict(driver.top.code.source.lines)[line.number].strip()
     assert any(len(word) > 4 and text.startswith(word.strip()) for word in words)
-    begins = {MOMENT: "rows", HAPPENED: "self._returns", TARGET: "targets", ERROR: "errors", AFTER: "values"}
+    begins = {HAPPENED: "self._returns", TARGET: "targets", AFTER: "values"}
     for place, name in begins.items():
         code = driver.top.parts[place].code
         assert name in code.line.values, place
@@ -117,17 +116,15 @@ def test_the_code_is_folded_until_asked_for_and_lit_where_the_frame_is_made(driv
     assert number(target) in words, "beside the line, in points as all else on the screen"
     assert number(lesson.target) not in words
     assert number(lesson.discount) in words
-    before = driver.top.code.index
-    driver.widget(texts.LESSON_LINE).set(before - 1)
-    assert driver.top.code.index == before - 1
 
 
-def test_every_line_stands_in_the_source_and_its_numbers_are_listed(lesson: Lesson):
-    lines = [(part.code, line) for part in parts_of(lesson) for line in part.code.lines]
-    assert len(lines) > 100
-    for code, line in lines:
-        code.index = code.lines.index(line)
-        assert line.number in dict(code.source.lines), f"{line.function}, line {line.number}"
+def test_each_frame_has_a_line_that_ran_and_stands_in_its_source(lesson: Lesson):
+    for part in parts_of(lesson)[HAPPENED:]:
+        line, source = part.code.line, part.code.source
+        assert line is not None
+        assert source is not None
+        assert line.number in dict(source.lines), f"{line.function}, line {line.number}"
+        assert line.values
     assert case_of(Value("", (3,), np.array([0.5, 0, 1]))) == "0.5000 0 1.000"
 
 
@@ -173,18 +170,15 @@ def test_another_language_changes_all_words_at_once(modern: Driver):
 def test_the_numbers_of_each_frame_are_those_of_the_learning_step(
     driver: Driver, lesson: Lesson, subtests: pytest.Subtests
 ):
-    for check in (moment_and_values_are_those_given_and_answered, what_happened_shows_each_decisions_pay,
-                  the_target_is_a_sum_that_says_who_judges, the_curve_is_the_costs_own, pulls_add_up_to_the_step,
+    for check in (values_are_those_answered, what_happened_shows_each_decisions_pay,
+                  the_target_is_a_sum_that_says_who_judges, pulls_add_up_to_the_step,
                   a_units_sum_adds_up_to_its_value):  # fmt: skip
         with subtests.test(check.__name__):
             check(driver, lesson)
 
 
-def moment_and_values_are_those_given_and_answered(driver: Driver, lesson: Lesson):
-    words = shown(driver, MOMENT)
-    for feature, value in enumerate(in_units(lesson.cell.state).tolist()):
-        assert {texts.INPUTS[feature], sensed(value, feature), number(float(lesson.state[feature]))} <= set(words)
-    words = shown(driver, VALUES)
+def values_are_those_answered(driver: Driver, lesson: Lesson):
+    words = shown(driver, NETWORK)
     for value in in_points(lesson.predicted, lesson.config.reward_scale).tolist():
         assert f"{value:.2f}".replace("-", "−") in words
 
@@ -193,8 +187,9 @@ def what_happened_shows_each_decisions_pay(driver: Driver, lesson: Lesson):
     words, flown = shown(driver, HAPPENED), lesson.flown
     assert flown is not None
     assert points(float(lesson.cell.reward) / lesson.config.reward_scale) in words
-    for feature, value in enumerate(in_units(lesson.cell.next_state).tolist()):
-        assert sensed(value, feature) in words
+    for state in (lesson.cell.state, lesson.cell.next_state):
+        for feature, value in enumerate(in_units(state).tolist()):
+            assert {texts.INPUTS[feature], sensed(value, feature)} <= set(words)
     explanations = explained(driver)
     for place, (reward, factor) in enumerate(
         zip(flown.rewards.tolist(), lesson.config.discount ** np.arange(len(flown.rewards)), strict=True)
@@ -213,6 +208,7 @@ def the_target_is_a_sum_that_says_who_judges(driver: Driver, lesson: Lesson):
     words, scale, config = shown(driver, TARGET), lesson.config.reward_scale, lesson.config
     for value in (lesson.target, float(lesson.cell.reward), lesson.next_value):
         assert points(value / scale) in words
+    assert f"{texts.LESSON_ERROR} {points(lesson.error / scale)}" in words
     assert f"{lesson.discount:.3f}" in words
     assert (texts.LESSON_PICK in words) == (config.target_judges and config.double)
     assert (texts.LESSON_PICK_AND_JUDGE in words) == (config.target_judges and not config.double)
@@ -234,57 +230,49 @@ def test_a_target_at_the_end_of_a_flight_says_that_nothing_comes_after(open_game
     assert set(texts.LESSON_OUTCOMES) & set(shown(driver, HAPPENED))
 
 
-def the_curve_is_the_costs_own(driver: Driver, lesson: Lesson):
-    words, frame, cost = shown(driver, ERROR), driver.top.frame, COSTS[lesson.config.cost]()
-    assert isinstance(frame, ErrorFrame)
-    for error in (-2.5, -0.1, 0.0, 0.4, 3.0):
-        assert frame.cost_of(error) == cost(np.array([error]), np.zeros(1))
-    push = frame.push_of(lesson.error) * lesson.weight / len(lesson.batch_errors)
-    assert lesson.derivative == pytest.approx(push, rel=1e-5)
-    assert number(lesson.derivative).lstrip("−") in {word.lstrip("+−") for word in words}
-
-
-def test_a_better_action_and_steps_uphill_are_given_their_reason(lesson: Lesson):
-    frames = [part.frame for part in parts_of(lesson)]
+def test_a_better_action_is_given_its_reason(lesson: Lesson):
+    frame = parts_of(lesson)[NETWORK].frame
     best, action = int(lesson.predicted.argmax()), int(lesson.cell.action)
     higher = points(float(lesson.predicted[best]) / lesson.config.reward_scale)
-    assert (f"a higher value, {higher}" in frames[VALUES].sentence) == (best != action)
-    gradient, adam = frames[GRADIENT], lesson.config.optimizer == "adam"
-    assert isinstance(gradient, GradientFrame)
-    assert (texts.LESSON_DOWNHILL[1] in gradient.sentence) == adam
-    uphill = 0
-    for gradient.rank in range(24):
-        index = gradient.weight.place
-        assert gradient.uphill == (lesson.step.gradient[index] * lesson.step.taken[index] < 0)
-        uphill += gradient.uphill
-    assert bool(uphill) == adam, "plain steps never go uphill, and some of Adam's do"
+    assert (f"a higher value, {higher}" in frame.sentence) == (best != action)
+    assert isinstance(frame, NetworkFrame)
+    assert frame.weight is not None
+    index = frame.weight.place
+    assert frame.uphill == (lesson.step.gradient[index] * lesson.step.taken[index] < 0)
+    assert not frame.uphill or lesson.config.optimizer == "adam", "plain steps never go uphill"
 
 
-def test_the_gradient_and_the_step_of_any_weight_are_the_optimizers(driver: Driver, lesson: Lesson):
+def test_the_gradient_and_the_step_of_the_steepest_weight_are_the_optimizers(driver: Driver, lesson: Lesson):
     driver.resize((1280, 1400))
     step = lesson.step
-    for rank in (1, 5):
-        driver.top.show(GRADIENT)
-        driver.widget(texts.LESSON_PICK_WEIGHT).set(rank)
-        words, frame = {word.lstrip("+") for word in shown(driver, GRADIENT)}, driver.top.frame
-        assert isinstance(frame, GradientFrame)
-        weight, index = frame.weight, frame.weight.place
-        sizes = np.sort(np.abs(np.concatenate([each.weights.ravel() for each in links_of(frame)])))
-        assert abs(float(step.gradient[index])) == pytest.approx(float(sizes[-rank]))
-        weights = frame.step.weights[weight.link].weights
-        assert weights[weight.start, weight.end] == step.values_before[index]
-        assert {number(float(step.gradient[index])), number(-float(step.taken[index]))} <= words
-        assert number(float(step.values_after[index])) in words
-        if lesson.config.optimizer == "adam":
-            assert number(0.1 * float(step.optimizer_after["gradient_sum"][index])) in words
-            assert number(0.001 * float(step.optimizer_after["square_sum"][index])) in words
-    whose = driver.choice(texts.LESSON_WHOSE[1])
-    whose.choose(1)
-    assert frame.alone
+    driver.top.show(NETWORK)
+    frame = driver.top.frame
+    assert isinstance(frame, NetworkFrame)
+    frame.turn(1)
+    words = {word.lstrip("+") for word in shown(driver, NETWORK)}
+    weight = frame.weight
+    assert weight is not None
+    index = weight.place
+    sizes = np.abs(np.concatenate([each.weights.ravel() for each in links_of(frame)]))
+    assert abs(float(step.gradient[index])) == pytest.approx(float(sizes.max()))
+    weights = frame.step.weights[weight.link].weights
+    assert weights[weight.start, weight.end] == step.values_before[index]
+    assert {number(float(step.gradient[index])), number(-float(step.taken[index]))} <= words
+    assert number(float(step.values_after[index])) in words
+    if lesson.config.optimizer == "adam":
+        assert number(0.1 * float(step.optimizer_after["gradient_sum"][index])) in words
+        assert number(0.001 * float(step.optimizer_after["square_sum"][index])) in words
+    ways = driver.choice(texts.LESSON_WAYS[2])
+    ways.choose(1)
+    assert frame._network.gradients == pytest.approx(step.gradient)
+    assert frame.view.show == "gradients"
+    ways.choose(2)
     assert frame._network.gradients == pytest.approx(step.share)
+    ways.choose(0)
+    assert frame.view.show == "activations"
 
 
-def links_of(frame: GradientFrame) -> list[Link]:
+def links_of(frame: NetworkFrame) -> list[Link]:
     """Return the slopes of the links between the network's stages."""
     network = frame.step.network.copy()
     network.values = frame.step.taken.gradient
@@ -299,7 +287,6 @@ def pulls_add_up_to_the_step(driver: Driver, lesson: Lesson):
     assert points(before) in words
     assert points(after) in words
     pulls = frame.pulls
-    assert pulls is not None
     assert pulls.own + pulls.others + pulls.earlier + pulls.bend == pytest.approx((after - before) * scale, abs=1e-9)
     assert pulls.own * lesson.error < 0, "a memory's own gradient pulls its value towards the target"
     assert abs(pulls.bend) < 0.2 * (abs(pulls.own) + abs(pulls.others) + abs(pulls.earlier))
@@ -308,12 +295,12 @@ def pulls_add_up_to_the_step(driver: Driver, lesson: Lesson):
 
 
 def a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
-    frame = driver.top.parts[VALUES].frame
+    frame = driver.top.parts[NETWORK].frame
     assert isinstance(frame, NetworkFrame)
     assert_sums_add_up(frame)
     last = frame.unit(len(frame.view.columns) - 1, int(lesson.cell.action)).split("\n")[-1]
     assert last.endswith(points(float(lesson.predicted[int(lesson.cell.action)]) / lesson.config.reward_scale))
-    driver.top.show(VALUES)
+    driver.top.show(NETWORK)
     assert frame.step.unit_name(1, int(frame.view.columns[1].units[0])) in explained(driver)
 
 
@@ -323,29 +310,6 @@ def assert_sums_add_up(frame: NetworkFrame) -> None:
             figures = figures_of(frame.unit(column, unit))
             at = [word for word, _ in figures].index(texts.LESSON_STAGES["sum"])
             assert sum(figure for _, figure in figures[:at]) == pytest.approx(figures[at][1], rel=0.02, abs=0.005)
-
-
-# An image of the digit network
-
-
-@pytest.mark.parametrize("preset", ["classic", "modern"])
-def test_an_image_is_shown_in_seven_frames_as_well(open_game: Open, preset: str):
-    lesson = digit_lesson_of(preset)
-    driver = open_game(LessonScene, lesson)
-    driver.frames(2)
-    digit = int(lesson.labels[lesson.step.row])
-    words = [shown(driver, place) for place in range(len(driver.top.parts))]
-    assert len(words) == 7
-    assert texts.LESSON_LABEL.format(digit=digit) in words[0]
-    for column, values in ((2, lesson.outputs), (2, lesson.probabilities_before), (3, lesson.target)):
-        assert {number(value) for value in values.tolist()} <= set(words[column])
-    assert {number(value) for value in lesson.derivative.tolist()} <= {word.lstrip("+") for word in words[4]}
-    assert number(lesson.step.gradient_length) in " ".join(words[5])
-    for each in (lesson.probabilities_before, lesson.probabilities_after):
-        assert number(float(each[digit])) in " ".join(words[6])
-    frame = driver.top.parts[1].frame
-    assert isinstance(frame, NetworkFrame)
-    assert_sums_add_up(frame)
 
 
 def test_a_dueling_network_and_one_without_source_are_shown(open_game: Open, monkeypatch: pytest.MonkeyPatch):

@@ -9,18 +9,16 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.scene import Scene
 from game.flight.days import FILE_NAME, Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
-from game.scenes.logbook.replay import ReplayScene
-from game.scenes.play.daily import DailyStart, DaysScene
+from game.scenes.menus.menu import FlightsScene
+from game.scenes.play.daily import DailyStart
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
-from game.ui.listing import ListRow
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
 from tests.support.flights import kept, play
@@ -30,8 +28,8 @@ TODAY = date.today()
 YESTERDAY = TODAY - timedelta(days=1)
 
 
-def day_scene(context: Context) -> Scene:
-    return DaysScene(context, TODAY)
+def page(context: Context) -> Scene:
+    return FlightsScene(context, today=TODAY)
 
 
 def today(context: Context) -> Scene:
@@ -77,9 +75,9 @@ def test_what_makes_the_first_attempt_easier_is_said_before_its_first_key(
 
 
 def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, context: Context):
-    driver = open_game(day_scene)
+    driver = open_game(page)
     driver.frames(2)
-    driver.press_on(texts.DAYS_FLY)
+    driver.press_on(texts.FLIGHTS["day"][0])
     driver.frames(10)
     assert play(driver).credit.counts
     assert attempt(context) is None  # it hangs, and nothing has begun
@@ -93,16 +91,16 @@ def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, cont
     again = play(driver)
     assert again.credit.bar == "day_again"
     assert again.credit.notice == texts.NOT_COUNTED["day_again"]
-    assert again.flown.ghost.name == texts.DAILY_GHOST_TODAY
+    assert again.flown.ghost.name == texts.DAILY_GHOST
     end(driver, TOO_FAST)
     assert attempt(context) == first
     assert [entry.alone for entry in Records(context.user_dir).entries()] == [True, False]
 
 
-def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
-    driver = open_game(day_scene)
+def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context, written: list[str]):
+    driver = open_game(page)
     driver.frames(2)
-    driver.press_on(texts.DAYS_FLY)
+    driver.press_on(texts.FLIGHTS["day"][0])
     driver.frames(3)
     driver.key(pygame.K_UP)
     driver.frames(20)
@@ -113,29 +111,27 @@ def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
     assert play(driver).credit.bar == "day_again"
     end(driver, TOO_FAST)
     assert attempt(context) == Attempt(TODAY.isoformat())  # practice changes nothing
-    driver = open_game(day_scene)
+    driver = open_game(page)
     driver.frames(2)
-    assert driver.top.days[0] == TODAY
-    assert driver.widget(texts.DAYS_FLY_AGAIN)
+    assert texts.DAYS_LEFT in written
 
 
-def test_a_day_of_the_past_is_flown_beside_ones_best_flight_of_it(open_game: Open, context: Context):
-    note(context, YESTERDAY)
-    driver = open_game(day_scene)
+def test_the_page_of_play_says_how_today_and_yesterday_went_and_the_ghost_is_the_best_of_the_day(
+    open_game: Open, context: Context, written: list[str]
+):
+    yesterday, first = note(context, YESTERDAY), note(context, TODAY)
+    driver = open_game(page)
     driver.frames(2)
-    driver.key(pygame.K_DOWN)
-    driver.frames(2)
-    driver.press_on(texts.DAYS_FLY_PAST)
+    assert texts.DAILY_LANDED.format(points=first.score) in written
+    assert texts.DAYS_YESTERDAY.format(result=yesterday.result) in " ".join(written)
+    driver.press_on(texts.FLIGHTS["day"][0])
     driver.frames(2)
     scene = play(driver)
-    assert scene.credit.bar == "day_past"
-    assert scene.flight.recording.seed == YESTERDAY.toordinal()
-    assert scene.flown.ghost.name == texts.DAILY_GHOST
-    end(driver, TOO_FAST)
-    assert attempt(context) is None
-    assert attempt(context, YESTERDAY).outcome == Outcome.LANDED.name
+    assert scene.credit.bar == "day_again"
+    assert scene.flight.recording.seed == TODAY.toordinal()
+    assert scene.flown.ghost.flight.recording.actions == []
     assert Days(context.user_dir).best_flight(YESTERDAY).recording.seed == YESTERDAY.toordinal()
-    assert Days(context.user_dir).best_flight(TODAY) is None, "which is of another day"
+    assert Days(context.user_dir).best_flight(TODAY + timedelta(days=1)) is None, "which is of another day"
 
 
 def test_the_line_to_paste_says_nothing_of_the_way(open_game: Open, context: Context, clipboard: list[str]):
@@ -151,19 +147,6 @@ def test_the_line_to_paste_says_nothing_of_the_way(open_game: Open, context: Con
     assert Attempt("2026-11-22", "LANDED", 84, "practice").line.endswith("first attempt, made easier")
 
 
-def test_everything_of_a_day_can_be_copied_and_watched(open_game: Open, context: Context, clipboard: list[str]):
-    first_attempt = note(context, TODAY)
-    driver = open_game(day_scene)
-    driver.frames(2)
-    driver.press_on(texts.DAYS_COPY)
-    assert clipboard[-1] == first_attempt.line
-    driver.press_on(texts.CODE_COPY)
-    assert clipboard[-1].startswith("tranq3-")
-    driver.press_on(texts.LOGBOOK_WATCH)
-    driver.frames(2)
-    assert isinstance(driver.top, ReplayScene)
-
-
 def test_a_damaged_line_is_counted_the_rest_is_read_and_what_has_ended_is_never_replaced(
     open_game: Open, context: Context
 ):
@@ -175,7 +158,7 @@ def test_a_damaged_line_is_counted_the_rest_is_read_and_what_has_ended_is_never_
     again = Days(context.user_dir)
     assert [each.outcome for each in again.attempts.values()] == ["CRASHED", "LANDED"]
     assert again.problem == texts.FLIGHTS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
-    driver = open_game(day_scene)
+    driver = open_game(page)
     driver.frames(2)
     assert driver.said == again.problem
 
@@ -201,7 +184,5 @@ def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(
     first_attempt = attempt(context, day)
     assert first_attempt
     assert clipboard[-1] == first_attempt.line == f"Tranquility {day} · {texts.BESIDE_RESULT} · first attempt"
-    driver = open_game(lambda context: DaysScene(context, day))
-    driver.frames(2)
-    assert driver.the(ListRow).rows[0][1] == texts.BESIDE_RESULT
+    assert first_attempt.result == texts.BESIDE_RESULT
     assert replace(first_attempt, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]

@@ -44,7 +44,7 @@ def confusion() -> Confusion:
 
 
 def test_every_setting_has_a_knob_and_a_word():
-    turned = knob_descriptions(DigitConfig)
+    turned, groups = knob_descriptions(DigitConfig), {each.name: each.metadata["group"] for each in fields(DigitConfig)}
     assert {dial.field for dial in turned} == {item.name for item in fields(DigitConfig)} <= set(texts.KNOBS)
     for dial in turned:
         assert len(dial.stops) > 1
@@ -53,7 +53,7 @@ def test_every_setting_has_a_knob_and_a_word():
             preset = "classic" if dial.field == "batch_size" else "modern"
             config = dial.write(DIGIT_PRESETS[preset], stop)
             assert dial.read(config) == stop
-            if dial.page == "network":
+            if groups[dial.field] == "network":
                 network = build_digit_network(config, np.random.default_rng(0))
                 assert network.predict(DigitClassifier(network).shaped(np.zeros((1, 28, 28)))).shape == (1, 10)
 

@@ -69,23 +69,6 @@ def texts_fit_in_windows_of_any_shape(visit: Visit) -> None:
     visit.driver.resize(VIEW_SIZE)
 
 
-NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
-
-
-def a_note_hides_nothing_that_is_to_be_read_or_pressed(visit: Visit) -> None:
-    driver = visit.driver
-    driver.frames(2)  # what was pressed before may begin a flight
-    driver.app.context.note(NOTE)
-    driver.frames(2)
-    notes, canvas = driver.app.notes, driver.app.canvas
-    place = notes.box(canvas)
-    canvas.turn_page()  # what stands on the last frame
-    assert not [area for area in canvas.words if area.colliderect(place)], "the note lies on words"
-    assert not [area for area in canvas.looked_at if area.colliderect(place)], "the note lies on a pad or a craft"
-    driver.frames(15)
-    assert place == notes.box(canvas), "the note does not stay where it is"
-
-
 # Few things to choose from, and few words
 
 MOST_CHOICES, MOST_WORDS = 7, 60
@@ -292,21 +275,18 @@ CHECKERS: tuple[Callable[[Visit], None], ...] = (
     hints_name_the_players_own_keys,
     hints_name_the_keys_of_their_own_actions,
     the_key_the_button_and_the_click_run_the_same_action,
-    a_note_hides_nothing_that_is_to_be_read_or_pressed,
 )
 IN_HAND = {"WatchScene, explained"}  # the lander is held there: keys move it, and hints say so
 FLYING = {"Play, flown by the network"}
 NOT_AT = {
     hints_name_the_keys_of_their_own_actions: IN_HAND | FLYING,  # where there are none
     the_key_the_button_and_the_click_run_the_same_action: IN_HAND,
-    # Words stand in every row of these.
-    a_note_hides_nothing_that_is_to_be_read_or_pressed: {"swarm", "swarm, after a while", "DigitInsideScene"},
 }
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
     "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
-    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
+    "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
     "DigitTrainingScene",
 }  # fmt: skip
 IN_FLIGHT = {

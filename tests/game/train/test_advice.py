@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.explain.inspection import NetworkHealth
 from ai.training.config import PRESETS
 from ai.training.hints import RULES, Hint
-from ai.training.history import Checkpoint, History
+from ai.training.history import Checkpoint, History, SettingChange
 from game.core import texts
 from game.scenes.train.advice import Advice
 from game.ui.context import Context
@@ -23,7 +22,8 @@ MODERN = PRESETS["modern"]
 
 
 @pytest.fixture
-def collapsed() -> History:
+def broken() -> History:
+    """A run that lands hardly any more since its pay was changed."""
     run = History()
     for number in range(400):
         success = 0.97 if number < 300 else 0.2
@@ -60,29 +60,31 @@ def test_while_something_else_waits_no_hint_asks(context: Context) -> None:
     assert list(words_of(advice, context)) == [texts.HINT_APPLY, texts.HINT_DISMISS]
 
 
-def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, collapsed: History) -> None:
+def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, broken: History) -> None:
     turned: list[tuple[str, float]] = []
     gone_to: list[int] = []
     growing = History()
     run = SimpleNamespace(
         history=growing,
-        config=MODERN.changed(schedule_decisions=600_000),  # its rate has not come down yet
+        config=MODERN.turned("reward_weights.time", 5.0),
         ask=lambda _, decisions: gone_to.append(decisions),
     )
     advice = advised(run, lambda name, value: turned.append((name, value)))
-    for checkpoint in collapsed.checkpoints:
+    for checkpoint in broken.checkpoints:
         growing.append(checkpoint)
-    for row in collapsed.points:
+    for number, row in enumerate(broken.points):
         now = dict(zip(("seconds", "decisions", "episodes", "success"), row.tolist(), strict=False))
         growing.append(replace(HEALTHY, **now))
-        advice.follow(NetworkHealth())
-    assert advice.hint == "collapsed"
+        if number == 300:
+            growing.append(SettingChange(300_000, "reward_weights.time", -0.4, 5.0, seconds=30.0))
+        advice.follow()
+    assert advice.hint == "changed"
     words_of(advice, context)[texts.HINT_APPLY].press()
     assert gone_to == [200_000]
-    assert not turned
+    assert turned == [("reward_weights.time", -0.4)]
     assert advice.shown, "the way back is offered"
     assert "200,000" in advice.done, "and what was done is said"
     words_of(advice, context)[texts.HINT_UNDO].press()
     assert gone_to == [200_000, 390_000]
-    assert not turned
+    assert turned[1:] == [("reward_weights.time", 5.0)]
     assert not advice.shown

@@ -1,4 +1,4 @@
-"""The panel of knobs, through real pygame events: on Train's screen, where all of them are open."""
+"""The panel of knobs, through real pygame events: on Train's screen, where their page is open."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,11 +12,9 @@ from game.scenes.train.base import KNOBS
 from game.scenes.train.knob import Knob, SliderKnob, WordsKnob
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.scene import TrainScene
-from game.training.run_settings import knob_descriptions, pages
 from tests.support.driver import Driver
 from tests.support.written import words_written
 
-PAGES = pages(knob_descriptions())
 MODERN = PRESETS["modern"]
 
 
@@ -57,11 +55,6 @@ def panel(open_game: Callable[..., Driver]) -> tuple[Driver, Panel]:
     driver.top.open(KNOBS)
     driver.frames(2)
     return driver, Panel(driver)
-
-
-def turn_to(game: Driver, page: str) -> None:
-    game.choice(texts.KNOB_PAGES[page]).choose(PAGES.index(page))
-    game.frames(2)
 
 
 def at(knob: SliderKnob, fraction: float) -> tuple[float, float]:
@@ -107,7 +100,6 @@ def test_arrows_go_from_stop_to_stop_even_from_between_them_and_r_brings_the_pre
 
 def test_words_without_room_go_on_below_and_sizes_that_have_none_get_one(panel: tuple[Driver, Panel]):
     game, scene = panel
-    turn_to(game, "network")
     scene.knobs.set_config(MODERN.changed(hidden=(48,)), 0)
     assert (48,) in scene.knob("hidden").values
     for size in ((1280, 720), (800, 600)):
@@ -166,7 +158,6 @@ def test_a_preset_is_a_word_and_a_sabotage_waits_under_its_own_name(panel: tuple
 
 def test_a_new_pay_says_that_the_memory_begins_anew(panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch):
     game, scene = panel
-    turn_to(game, "reward")
     game.form.focus(scene.knob("reward_weights.time"))
     for running in (False, True):
         scene.knobs.set_running(running)
@@ -189,24 +180,10 @@ def test_what_acts_now_is_shown_beside_what_is_set(panel: tuple[Driver, Panel], 
     knobs.show_in_force(in_force(MODERN, 50_000, 400))
     rate, last = scene.knob("learning_rate"), scene.knob("final_learning_rate")
     assert rate.now == pytest.approx(1.65e-3)
-    assert not rate.idle
     assert last.now is None
     written = words_drawn(game, monkeypatch)
     assert texts.KNOB_NOW.format(value="0.00165") in written
     assert "0.003" in written, "and what is set stays"
-
-    knobs.show_in_force(in_force(MODERN, 100_000, 900))
-    assert rate.now is None
-    assert rate.idle == texts.KNOBS_IDLE["learning_rate"]
-    assert not last.idle
-    assert rate.colour != last.colour
-    game.form.focus(rate)
-    written = words_drawn(game, monkeypatch)
-    assert texts.KNOB_IDLE in written
-    assert rate.idle.split(",")[0] in " ".join(written)
-
-    knobs.set_running(False)
-    assert not rate.idle, "a new run begins with it"
 
 
 def test_a_knob_whose_time_is_over_gives_way_to_the_one_that_acts_now(panel: tuple[Driver, Panel]):
@@ -223,7 +200,12 @@ def test_a_knob_whose_time_is_over_gives_way_to_the_one_that_acts_now(panel: tup
     assert now == [rates[1] if each == rates[0] else each for each in named], "its name says that it is another one"
     game.top.open(KNOBS)
     game.frames(2)
-    assert scene.knob("final_learning_rate").label == texts.KNOBS["final_learning_rate"]
+    now = [each.label for each in game.form.widgets if isinstance(each, Knob)]
+    assert rates[1] in now
+    assert rates[0] not in now, "none is shown that has no effect"
+    scene.knobs.set_running(False)
+    game.frames(2)
+    assert rates[0] in [each.label for each in game.form.widgets if isinstance(each, Knob)], "a new run begins with it"
 
 
 def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:

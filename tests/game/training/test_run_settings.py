@@ -3,13 +3,12 @@ from typing import Any
 
 import pytest
 
-from ai.digits.config import DigitConfig
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES, sabotaged
 from game.core import texts
-from game.training.run_kind import LANDERS
-from game.training.run_settings import RunSettings, figure, knob_descriptions, pages
+from game.training.run_kind import DIGITS, LANDERS
+from game.training.run_settings import SEED, RunSettings, figure, knob_descriptions
 
 KNOBS = {knob.name: knob for knob in knob_descriptions()}
 
@@ -34,8 +33,14 @@ def test_every_field_that_can_be_turned_has_a_knob_and_a_word():
     assert {knob.field for knob in KNOBS.values()} == turned
     assert {knob.part for knob in KNOBS.values()} - {""} == {part.name for part in fields(RewardWeights)}
     assert turned <= set(texts.KNOBS)
-    assert {*pages(KNOBS.values()), *pages(knob_descriptions(DigitConfig))} == set(texts.KNOB_PAGES)
     assert all(knob.help for knob in KNOBS.values())
+
+
+def test_a_page_shows_sixteen_knobs_at_most_the_first_of_all_among_them():
+    for kind in (LANDERS, DIGITS):
+        known = {knob.name for knob in kind.knob_descriptions} | {SEED}
+        assert set(kind.first) <= set(kind.page) <= known
+        assert len(set(kind.page)) == len(kind.page) <= 16
 
 
 def test_a_configuration_takes_every_stop():

@@ -189,12 +189,9 @@ def look(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Drawn]:
 
     monkeypatch.setattr(Canvas, "text", noted)
 
-    def seen(flight: Flight, factors: PadFactors, covered: pygame.Rect | None = None) -> Drawn:
+    def seen(flight: Flight, factors: PadFactors, head: float = 104.0) -> Drawn:
         drawn.clear()
-        if covered:
-            canvas.cover(covered)
-        canvas.turn_page()
-        factors.draw(canvas, view_of(), flight.env.position[0])
+        factors.draw(canvas, view_of(), flight.env.position[0], ClearArea(head=head))
         return dict(drawn)
 
     return seen
@@ -218,6 +215,14 @@ def test_each_of_several_pads_has_its_factor_above_it_at_every_size_of_text(look
             assert box.height >= 15
 
 
+def test_a_factor_stands_below_its_pad_where_words_reach_down_to_it(look):
+    flight = Flight(3, pads=3)
+    above, below = (look(flight, PadFactors(flight), head) for head in (104.0, 700.0))
+    for pad in flight.env.ground.pads:
+        word, (_, deck) = f"×{pad.factor}", view_of().points((pad.x, pad.top)).tolist()
+        assert above[word][0].bottom < deck < below[word][0].centery
+
+
 def test_a_single_goal_has_none_and_a_flat_spot_brings_both(look):
     flight = Flight(3)
     assert not look(flight, PadFactors(flight))
@@ -232,28 +237,13 @@ def test_the_pad_that_is_aimed_at_is_brightest_and_becomes_so_gently(look):
     factors = PadFactors(flight)
     for number, pad in enumerate(flight.env.ground.pads):
         flight.env.target[:] = number
-        before = factors.meant[number]
+        before = factors.aimed[number]
         factors.follow(calm=False)
-        assert before <= factors.meant[number] <= before + 0.1
+        assert before <= factors.aimed[number] <= before + 0.1
         factors.follow(calm=True)
         alphas = {word: alpha for word, (_, alpha) in look(flight, factors).items()}
         assert max(alphas, key=alphas.__getitem__) == f"×{pad.factor}"
         assert min(alphas.values()) > 0.4  # the others can be read as well
-
-
-def test_the_co_pilots_reading_of_the_pilot_decides_where_there_is_one(look, monkeypatch):
-    flight = Flight(3, pads=3)
-
-    class Decision:
-        likely = np.array([[0.1, 0.2, 0.7]])
-
-    monkeypatch.setattr(Flight, "shared", True)
-    flight.decision = Decision()  # type: ignore[assignment]
-    factors = PadFactors(flight)
-    assert factors.meant == pytest.approx([0.1, 0.2, 0.7])
-    seen = look(flight, factors)
-    first, second, third = (seen[f"×{pad.factor}"][1] for pad in flight.env.ground.pads)
-    assert first < second < third
 
 
 def test_a_factor_gives_way_to_a_craft_that_comes_near(look):

@@ -9,7 +9,6 @@ from ai.lander.missions import MISSIONS
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
 from engine import Circle, Polygon, Sprite, World
 from game.drawing.canvas import Canvas
-from game.drawing.sky import NightSky
 from game.drawing.tokens import EMBER, HUMAN, INK
 from game.scenes.physics import bodies
 from game.scenes.physics.bodies import Outlines
@@ -22,7 +21,6 @@ from game.world.landscape.wind import Wind
 from game.world.particles import DUST
 from game.world.paths import draw_stretch
 from game.world.stage import Stage
-from tests.support.driver import Driver
 
 
 @pytest.fixture
@@ -43,24 +41,6 @@ def test_the_same_chance_paints_the_same_moon_and_reduced_motion_stills_its_star
         assert np.array_equal(pictures[0], pictures[1])
         assert np.array_equal(pictures[0], pictures[2]) is reduced
         assert pictures[0].any(axis=2).mean() > 0.99  # the whole view is painted
-
-
-def test_no_star_is_where_words_are(game: Driver):
-    canvas = game.app.canvas
-    moon, night = Backdrop(canvas.size, np.random.default_rng(7)), NightSky(np.random.default_rng(7), stars=900)
-    words = pygame.FRect(450, 40, 700, 200)
-    area = pygame.Rect(canvas.rect(*words))
-    for draw in (lambda: moon.draw(canvas, Camera(), 1.0), lambda: night.draw(canvas)):
-        glare = []
-        for written in (False, True, False):
-            if written:
-                canvas.panel(words)
-            canvas.turn_page()
-            draw()
-            picture = pixels(canvas.surface).max(axis=2).astype(int)[area.left : area.right, area.top : area.bottom]
-            glare.append((picture > np.median(picture) + 60).sum())
-        assert glare[1] == 0
-        assert glare[0] == glare[2] > 20, "they come back when the words are gone"
 
 
 def test_the_art_fits_the_physics():
