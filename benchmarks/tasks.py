@@ -23,6 +23,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from math import sqrt
 from typing import Any, Final
@@ -77,7 +78,7 @@ def earned(score: Any) -> float:
     return 100 * float(score.success) if isinstance(score, Evaluation) else float(score.mean_return)
 
 
-def ours(env: str, seed: int, decisions: int) -> Run:
+def ours(env: str, decisions: int, seed: int) -> Run:
     """Train with the setting, and measure the best network of all moments."""
     training = Training(setting(env), seed, evaluate_every=0)
     task, best, kept, spent = training.task, None, None, 0.0
@@ -93,7 +94,7 @@ def ours(env: str, seed: int, decisions: int) -> Run:
     return earned(task.evaluate(kept, task.test_episodes, TEST_SEED)), training.agent.decisions, spent
 
 
-def rivals(env: str, seed: int, share: float) -> Run:
+def rivals(env: str, share: float, seed: int) -> Run:
     """Train one of stable-baselines3's as its authors do, and measure it at the end."""
     import gymnasium
     import torch
@@ -136,10 +137,10 @@ def main() -> None:
     print("|---|---|---|---|---|---|")
     for env in names:
         aim, decisions = AIMS[env], round(arguments.share * AIMS[env].decisions)
-        row(env, aim.goal, arguments.seeds, lambda seed, env=env, count=decisions: ours(env, seed, count))
+        row(env, aim.goal, arguments.seeds, partial(ours, env, decisions))
         if env in TUNED and arguments.rival_seeds > 0 and find_spec("stable_baselines3"):
-            row(f"{env}, stable-baselines3's DQN", aim.goal, arguments.rival_seeds,
-                lambda seed, env=env: rivals(env, seed, arguments.share))  # fmt: skip
+            name = f"{env}, stable-baselines3's DQN"
+            row(name, aim.goal, arguments.rival_seeds, partial(rivals, env, arguments.share))
     if not find_spec("stable_baselines3"):
         print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
 

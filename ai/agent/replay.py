@@ -95,7 +95,7 @@ class ReplayBuffer:
 
     def state(self, most: int) -> dict[str, NDArray[Any]]:
         """Return copies of the newest transitions, at most so many, oldest first: each field by its name."""
-        return self.at(self._newest(most))._asdict()
+        return self.at(self.newest(most))._asdict()
 
     def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
         """Fill an empty buffer with what `state` returned.
@@ -113,7 +113,7 @@ class ReplayBuffer:
         """Forget all transitions."""
         self._drop(self.size)
 
-    def _newest(self, most: int) -> Ints:
+    def newest(self, most: int) -> Ints:
         """Return the rows of the newest transitions, at most so many, oldest first."""
         return (self.start + np.arange(max(0, self.size - most), self.size)) % self.capacity
 
@@ -171,7 +171,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 
     def state(self, most: int) -> dict[str, NDArray[Any]]:
         """Return copies of the newest transitions, with their priorities."""
-        return super().state(most) | {"priorities": self.priorities[self._newest(most)]}
+        return super().state(most) | {"priorities": self.priorities[self.newest(most)]}
 
     def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
         """Fill an empty buffer with what `state` returned; raises as that of every buffer."""
@@ -179,7 +179,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         priorities = array_like(np.empty(self.size), state["priorities"], "priorities")
         if (priorities <= 0).any():
             raise ValueError("priorities are above 0")
-        self.priorities[self._newest(self.size)] = priorities
+        self.priorities[self.newest(self.size)] = priorities
         self.largest = max(self.largest, float(priorities.max(initial=0.0)))
 
     def _drop(self, count: int) -> None:

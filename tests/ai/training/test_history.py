@@ -168,3 +168,13 @@ def test_a_history_knows_in_which_unit_its_values_are(tmp_path):
     history.reward_scale = 0.1
     history.write(tmp_path)
     assert History.read(tmp_path).reward_scale == 0.1
+
+
+def test_an_amendment_of_a_change_that_is_not_there_stands_for_itself():
+    history = History()
+    history.append(SettingChange(10, "tau", 0.1, 0.2, amends=True))
+    assert history.setting_changes == [SettingChange(10, "tau", 0.1, 0.2)]
+    history.append(SettingChange(11, "tau", 0.2, 0.3, amends=True))
+    assert history.setting_changes == [SettingChange(11, "tau", 0.1, 0.3)]
+    history.append(SettingChange(12, "tau", 0.3, 0.1, amends=True))
+    assert history.setting_changes == []
