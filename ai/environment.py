@@ -18,6 +18,10 @@ T = TypeVar("T")
 SUCCESS: Final = 1  # the outcome of an episode that ended well, in every environment; 0 is one that goes on
 
 
+class ForeignEnvError(RuntimeError):
+    """Environment that is not ours has failed, or returns what it cannot: a line that names it."""
+
+
 @dataclass(frozen=True)
 class StepResult:
     """Result of one decision in every slot. Unpacks as its first five fields.

@@ -28,6 +28,7 @@ class Run(ABC):
         lost: what could not be restored of a run that goes on, in words.
         diverged: whether what it remembers may be broken: then there is no state to go on from.
         needs_state: whether no such run goes on without its state.
+        stopping: is asked again and again while a network is measured; where it says so, that ends without a score.
 
     """
 
@@ -41,6 +42,7 @@ class Run(ABC):
         self.seconds = 0.0
         self.best: Any = None
         self.lost, self.diverged = "", False
+        self.stopping: Callable[[], bool] = lambda: False
 
     @property
     @abstractmethod
@@ -68,6 +70,9 @@ class Run(ABC):
     @abstractmethod
     def restore_best(self) -> None:
         """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
+
+    def close(self) -> None:  # noqa: B027 - most hold nothing
+        """Let go of what it holds, such as other programs; it does not go on."""
 
     # On disk
 

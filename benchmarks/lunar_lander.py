@@ -3,9 +3,10 @@
     python -m benchmarks.lunar_lander [--seeds 3] [--decisions 300000] [--rival-seeds 3] [--rival-seconds 300]
 
 Ours has the settings `ai.training.config.LUNAR_LANDER`; the rival those its authors tuned for this. Every 20,000
-decisions (the rival: every ten seconds) the network flies 100 validation episodes without random actions, and the best
-so far is kept; in the end that one flies 100 others, which had no say in the choice. No clock chooses ours: the same
-seed and decisions give the same figures. Seconds are processor time on one thread, of training alone.
+decisions (the rival: every ten seconds) the network flies 100 validation episodes without random actions and with a
+decision at every step, as the rival's, and the best so far is kept; in the end that one flies 100 others, which had no
+say in the choice. No clock chooses ours: the same seed and decisions give the same figures. Seconds are processor time
+on one thread, of training alone.
 """
 
 import os
@@ -24,6 +25,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from ai.environment import finished
 from ai.training.config import gym_config
 from ai.training.gym_task import GymTask
 from ai.training.loop import Training
@@ -52,14 +54,14 @@ def measured(training: Iterator[Checkpoint], limit: float = np.inf) -> tuple[lis
     """Return the seconds to each mean return, all seconds and decisions, and what the best network earns at last."""
     task = GymTask(gym_config(ENV))
     seconds = [np.inf] * len(RETURNS)
-    scored = followed(training, lambda pilot: task.evaluate(pilot, VALIDATION_EPISODES, VALIDATION_SEED))
+    scored = followed(training, lambda pilot: finished(task.trial(pilot, VALIDATION_EPISODES, VALIDATION_SEED, 1)))
     for spent, decisions, pilot, best in scored:  # noqa: B007
         seconds = [
             min(old, spent) if best.mean_return >= goal else old for old, goal in zip(seconds, RETURNS, strict=True)
         ]
         if spent >= limit:
             break
-    return seconds, spent, decisions, task.evaluate(pilot, TEST_EPISODES, TEST_SEED).mean_return
+    return seconds, spent, decisions, finished(task.trial(pilot, TEST_EPISODES, TEST_SEED, 1)).mean_return
 
 
 def row(name: str, runs: list[tuple[list[float], float, int, float]]) -> None:

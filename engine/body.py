@@ -36,6 +36,10 @@ class _Part:
 class Body:
     """Handle on one body, which exists once in each of `world.batch` worlds.
 
+    A place or an angle that is set is a teleport: the body is there at once, passes through what lies between, pushes
+    and carries nothing on its way, and is only slowly pressed out of what it then overlaps. What is to push others,
+    as a lift does, is given a velocity.
+
     Arrays read through a handle are views that later steps change. They can't be written to: assign a whole
     property, or use `set` for some of the worlds, so that cached rotations, boxes and contacts are updated.
 
@@ -106,13 +110,13 @@ class Body:
         """Set pose and velocity in the worlds of `mask` (batch,), or in all; what is left out stays.
 
         Values are one for all worlds or have a row for each world that is set. Raises ValueError, and sets nothing, if
-        any is not finite.
+        any is not finite or of another shape.
         """
         worlds = None if mask is None else np.asarray(mask, dtype=bool)
         rows = slice(None) if worlds is None else worlds
         pose, motion = self.world.state.pose, self.world.state.velocity
         given = [
-            (table, part, finite(name, value))
+            (table, part, np.broadcast_to(finite(name, value), table[rows, self.index, part].shape))
             for table, part, name, value in (
                 (pose, slice(2), "position", position),
                 (pose, 2, "angle", angle),

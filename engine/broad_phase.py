@@ -10,8 +10,6 @@ is quickest along the last axis, and that is the longest one.
 
 from __future__ import annotations
 
-from itertools import product, zip_longest
-
 import numpy as np
 
 from engine.shapes import ShapeTable
@@ -25,7 +23,10 @@ class BroadPhase:
     Of a polygon and a circle, the polygon comes first.
     """
 
-    def __init__(self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float) -> None:
+    def __init__(
+        self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float, before: BroadPhase | None = None
+    ) -> None:
+        """Make the table; what `before` has of the first bodies is kept, and pairs of new ones come after it."""
         self._shapes = shapes
         self._moving, self._fixed = span(params.dynamic), ~params.dynamic
         self._shape_reach = shapes.reach + margin
@@ -34,8 +35,14 @@ class BroadPhase:
         self._boxes = np.zeros((4, len(params.group), batch))
         self._shape_boxes = np.zeros((4, len(shapes), batch))  # only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
-        self._body_pairs = _meeting_bodies(params)
+        self._body_pairs = _meeting_bodies(params, len(before._reach) if before else 0)
         self.pairs, self._rows = _meeting_shapes(self._body_pairs, shapes)
+        if before:
+            rows = np.where(self._rows < 0, -1, self._rows + len(before.pairs))
+            self._body_pairs = np.concatenate([before._body_pairs, self._body_pairs], axis=1)
+            self.pairs = np.concatenate([before.pairs, self.pairs])
+            wide = max(rows.shape[1], before._rows.shape[1])
+            self._rows = np.concatenate([_padded(before._rows, wide), _padded(rows, wide)])
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Discard the kept boxes of fixed bodies, which were put elsewhere."""
@@ -103,16 +110,19 @@ def _overlap(boxes: Array, a: Span, b: Span) -> Bools:
     return overlap
 
 
-def _meeting_bodies(params: BodyParams) -> Ints:
-    """Return all pairs of bodies that may meet, (2, pairs): one that can move, and one that their groups let it touch.
+def _meeting_bodies(params: BodyParams, first: int) -> Ints:
+    """Return the pairs of bodies that may meet, (2, pairs): one that can move, and one that their groups let it touch.
 
-    Of two that can move, each pair is there once.
+    Of two that can move, each pair is there once. At least one body of a pair is the `first` or a later one.
     """
     bodies, moving = np.arange(len(params.group)), np.flatnonzero(params.dynamic)
-    meet = (bodies > moving[:, None]) | ~params.dynamic
-    meet &= (params.group == 0) | (params.group != params.group[moving, None])
-    mover, other = meet.nonzero()
-    return np.stack([moving[mover], other])
+    pairs = []
+    for movers, others in ((moving[moving < first], bodies[first:]), (moving[moving >= first], bodies)):
+        meet = (others > movers[:, None]) | ~params.dynamic[others]
+        meet &= (params.group[others] == 0) | (params.group[others] != params.group[movers, None])
+        mover, other = meet.nonzero()
+        pairs.append(np.stack([movers[mover], others[other]]))
+    return np.concatenate(pairs, axis=1)
 
 
 def _meeting_shapes(body_pairs: Ints, shapes: ShapeTable) -> tuple[Ints, Ints]:
@@ -120,14 +130,19 @@ def _meeting_shapes(body_pairs: Ints, shapes: ShapeTable) -> tuple[Ints, Ints]:
 
     Where two bodies have fewer pairs of shapes than the most, -1 stands in place of rows.
     """
-    parts: dict[int, list[int]] = {}
-    for shape, body in enumerate(shapes.body.tolist()):
-        parts.setdefault(body, []).append(shape)
-    pairs: list[tuple[int, int]] = []
-    rows: list[range] = []
-    for one, other in body_pairs.T.tolist():
-        both = list(product(parts[one], parts[other]))
-        rows.append(range(len(pairs), len(pairs) + len(both)))
-        pairs += [(b, a) if shapes.is_circle[a] and not shapes.is_circle[b] else (a, b) for a, b in both]
-    padded = np.array(list(zip_longest(*rows, fillvalue=-1)), dtype=np.intp).T
-    return np.array(pairs, dtype=np.intp).reshape(-1, 2), padded
+    parts = np.bincount(shapes.body)  # of each body; they stand side by side in the table
+    begin, (one, other) = parts.cumsum() - parts, body_pairs
+    count = parts[one] * parts[other]
+    rows = np.arange(count.max(initial=0))
+    padded = np.where(rows < count[:, None], (count.cumsum() - count)[:, None] + rows, -1)
+    met, number = (rows < count[:, None]).nonzero()
+    number, across = np.divmod(number, parts[other][met])
+    pairs = np.stack([begin[one][met] + number, begin[other][met] + across], axis=1)
+    turned = shapes.is_circle[pairs[:, 0]] & ~shapes.is_circle[pairs[:, 1]]
+    pairs[turned] = pairs[turned, ::-1]
+    return pairs, padded
+
+
+def _padded(rows: Ints, wide: int) -> Ints:
+    """Return a table of rows widened with -1."""
+    return np.pad(rows, ((0, 0), (0, wide - rows.shape[1])), constant_values=-1)

@@ -24,6 +24,7 @@ from engine.vector import Array, Bools, Ints, dot, length
 
 # Two parallel faces are equally good references; a small bias keeps the choice from flickering; metres.
 REFERENCE_BIAS = 5e-4
+MOST_FACES = 1 << 20  # of a polygon, in the number that names two faces
 
 
 @dataclass
@@ -96,7 +97,7 @@ def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
     corners = _clip(start, end, ab.start[incident, incident_face], ab.end[incident, incident_face])
     depth = -dot(corners - start[:, None], out[:, None])
     normal = np.where(flip[:, None], -out, out)
-    number = (flip * 64 + reference_face) * 64 + incident_face  # up to 64 faces each
+    number = (flip * MOST_FACES + reference_face) * MOST_FACES + incident_face
     return Manifold(
         normal=normal,
         points=corners + out[:, None] * (depth / 2)[..., None],

@@ -49,15 +49,11 @@ class Contacts(Manifold):
 
 
 class NarrowPhase:
-    """Exact test of pairs of shapes that are near, rows of `pairs`, and what is known of each pair beforehand."""
+    """Exact test of pairs of shapes that are near, rows of `pairs`."""
 
     def __init__(self, params: BodyParams, shapes: ShapeTable, pairs: Ints) -> None:
-        self._shapes = shapes
+        self._params, self._shapes = params, shapes
         self.pairs = pairs  # (pairs, 2) of shapes
-        self._body = shapes.body[pairs]
-        self._free = params.dynamic[self._body]  # (pairs, 2): which of the two bodies can move
-        self._friction = _mix(params.friction[self._body], _geometric_mean, _DEFAULT_FRICTION)
-        self._restitution = _mix(params.restitution[self._body], np.maximum, 0.0)
         self._coloured: tuple[Ints, Ints, Ints] | None = None  # keys of the last step's contacts, their order, colours
 
     def touching(self, state: BodyState, world: Ints, pair: Ints) -> Contacts | None:
@@ -71,13 +67,14 @@ class NarrowPhase:
         order, colours = self._colour(world[rows], pair[rows], state.pose.shape[1])
         rows = rows[order]
         world, pair = world[rows], pair[rows]
+        body = self._shapes.body[self.pairs[pair]]
         return Contacts(
             **{name: table[rows] for name, table in vars(manifold).items()},
             world=world,
             pair=pair,
-            body=self._body[pair],
-            friction=self._friction[pair],
-            restitution=self._restitution[pair],
+            body=body,
+            friction=_mix(self._params.friction[body], _geometric_mean, _DEFAULT_FRICTION),
+            restitution=_mix(self._params.restitution[body], np.maximum, 0.0),
             impulse=np.zeros((len(rows), 3)),
             approach=np.zeros((len(rows), 3)),
             colour=colours,
@@ -91,7 +88,8 @@ class NarrowPhase:
         """Return order and colours of contacts; those of the last step if the same pairs touch."""
         key = self._key(world, pair)
         if self._coloured is None or not np.array_equal(key, self._coloured[0]):
-            colours = _colours(world[:, None] * bodies + self._body[pair], self._free[pair])
+            body = self._shapes.body[self.pairs[pair]]
+            colours = _colours(world[:, None] * bodies + body, self._params.dynamic[body])
             order = np.argsort(colours, kind="stable")
             self._coloured = (key, order, colours[order])
         return self._coloured[1:]

@@ -13,13 +13,16 @@ velocity, a force, a body taken out, a floor moved away and another gravity wake
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.contacts import Contacts
 from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints
+
+T = TypeVar("T", bound=np.generic)
 
 STILL: Final = 0.01  # m/s and rad/s up to which a body is still
 DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile
@@ -37,14 +40,31 @@ class Rest:
     """
 
     def __init__(self, params: BodyParams, state: BodyState, gravity: Array, allowed: bool) -> None:
-        self._allowed, self._dynamic = allowed, params.dynamic
-        self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
+        self._allowed = allowed
+        self._know(params)
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
         self.awake: Bools | None = None
         self._place: Array = state.pose.copy()  # where each body was when it came to be still
         self._pace: Array = state.velocity.copy()  # and its velocity then
         self._still: Ints = np.zeros(state.active.shape, dtype=np.intp)  # for how many steps it has been
         self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
+
+    def _know(self, params: BodyParams) -> None:
+        self._dynamic = params.dynamic
+        self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
+
+    def add(self, params: BodyParams, state: BodyState) -> None:
+        """Take in bodies that were added, awake; all others go on as they were."""
+        self._know(params)
+        new = slice(self.asleep.shape[1], None)
+        unslept = np.zeros_like(state.active[:, new])
+
+        pose, velocity, active = state.pose[:, new], state.velocity[:, new], state.active[:, new]
+        self.asleep, self._still = _grown(self.asleep, unslept), _grown(self._still, unslept)
+        self.awake = None if self.awake is None else _grown(self.awake, ~unslept)
+        self._place, self._pace = _grown(self._place, pose), _grown(self._pace, velocity)
+        seen = self._seen
+        self._seen = _grown(seen[0], pose), _grown(seen[1], velocity), _grown(seen[2], active), seen[3]
 
     def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
@@ -100,6 +120,11 @@ class Rest:
             disturbed = _linked(restless, contacts, self._dynamic)
             self.asleep = supported & ~disturbed & self._dynamic
         self.awake = ~self.asleep & (self._dynamic | restless) if self.asleep.any() else None
+
+
+def _grown(table: NDArray[T], rows: NDArray[Any]) -> NDArray[T]:
+    """Return a table (batch, bodies, ...) with more bodies."""
+    return np.concatenate([table, rows], axis=1, dtype=table.dtype)
 
 
 def _linked(start: Bools, contacts: Contacts, dynamic: Bools) -> Bools:

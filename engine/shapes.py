@@ -68,7 +68,8 @@ class Polygon:
         corners = np.array(vertices, dtype=float)
         if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
             raise ValueError(f"a polygon needs at least three finite (x, y) corners, not {vertices!r}")
-        if cross(corners, _following(corners)).sum() < 0:
+        own = corners - corners[0]  # far from the origin, products of large numbers would cancel
+        if cross(own, _following(own)).sum() < 0:
             corners = corners[::-1].copy()
         edges = _following(corners) - corners
         after = _following(edges)
@@ -88,9 +89,15 @@ class Polygon:
         return cls(rotate(corners, np.cos(angle), np.sin(angle)) + np.asarray(centre))
 
     @cached_property
+    def _own(self) -> Array:
+        """Vertices as seen from the first one: far from the origin, products of large numbers would cancel."""
+        own: Array = self.vertices - self.vertices[0]
+        return own
+
+    @cached_property
     def _fans(self) -> Array:
-        """Twice the signed area of the triangle between the origin and each edge, (k,)."""
-        return cross(self.vertices, _following(self.vertices))
+        """Twice the area of the triangle between the first vertex and each edge, (k,)."""
+        return cross(self._own, _following(self._own))
 
     @cached_property
     def area(self) -> float:
@@ -99,8 +106,13 @@ class Polygon:
 
     @cached_property
     def centroid(self) -> Array:
-        """Centre of area, (2,): Σ (vᵢ + vᵢ₊₁)·(vᵢ × vᵢ₊₁) / 6A over the vertices v, with A the area."""
-        sums = self.vertices + _following(self.vertices)
+        """Centre of area, (2,): v₀ + Σ (vᵢ + vᵢ₊₁)·(vᵢ × vᵢ₊₁) / 6A over the vertices v as seen from v₀, A the area."""
+        centre: Array = self.vertices[0] + self._own_centroid
+        return centre
+
+    @cached_property
+    def _own_centroid(self) -> Array:
+        sums = self._own + _following(self._own)
         centre: Array = (sums * self._fans[:, None]).sum(axis=0) / (6 * self.area)
         return centre
 
@@ -108,12 +120,12 @@ class Polygon:
     def second_moment(self) -> float:
         """Polar second moment of area about the centroid c, m⁴; times density it is the inertia.
 
-        About the origin it is Σ (a × b)·(a·a + a·b + b·b) / 12 over the edges from a to b; about c it is less by A·c·c
-        (parallel axis theorem).
+        About the first vertex it is Σ (a × b)·(a·a + a·b + b·b) / 12 over the edges from a to b, as seen from there;
+        about c it is less by A·c·c (parallel axis theorem).
         """
-        a, b = self.vertices, _following(self.vertices)
-        about_origin = (self._fans * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
-        return float(about_origin - self.area * dot(self.centroid, self.centroid))
+        a, b = self._own, _following(self._own)
+        about_first = (self._fans * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
+        return float(about_first - self.area * dot(self._own_centroid, self._own_centroid))
 
     @cached_property
     def bounding_radius(self) -> float:
@@ -161,21 +173,34 @@ class ShapeTable:
     what the first did not.
     """
 
-    def __init__(self, shapes: Sequence[Shape], bodies: Sequence[int], dynamic: Bools) -> None:
+    def __init__(
+        self, shapes: Sequence[Shape], bodies: Sequence[int], dynamic: Bools, before: ShapeTable | None = None
+    ) -> None:
+        """Make the table of all `shapes` of these `bodies`; `before` has the first of them already."""
+        self.start: Array
         self.body = np.array(bodies, dtype=np.intp)
         self.fixed = ~dynamic[self.body]
-        self.is_circle = np.array([isinstance(shape, Circle) for shape in shapes], dtype=bool)
-        self.radius = np.array([shape.radius if isinstance(shape, Circle) else 0.0 for shape in shapes])
-        self.centre = np.array([shape.centroid for shape in shapes]).reshape(-1, 2)
-        self.reach = np.array([shape.bounding_radius for shape in shapes])
-        edges = max([len(shape.vertices) for shape in shapes if isinstance(shape, Polygon)], default=3)
-        self.start, self.end, self.normal = np.zeros((3, len(shapes), edges, 2))
-        for row, shape in enumerate(shapes):
+        new = shapes[len(before) if before else 0 :]
+        self.is_circle = np.array([isinstance(shape, Circle) for shape in new], dtype=bool)
+        self.radius = np.array([shape.radius if isinstance(shape, Circle) else 0.0 for shape in new])
+        self.centre = np.array([shape.centroid for shape in new]).reshape(-1, 2)
+        self.reach = np.array([shape.bounding_radius for shape in new])
+        edges = max([len(shape.vertices) for shape in new if isinstance(shape, Polygon)], default=3)
+        former = before.start.shape[1] if before else 0
+        edges = max(edges, former)
+        self.start, self.end, self.normal = np.zeros((3, len(new), edges, 2))
+        for row, shape in enumerate(new):
             if isinstance(shape, Polygon):
                 edge = np.minimum(np.arange(edges), len(shape.vertices) - 1)
                 self.start[row] = shape.vertices[edge]
                 self.end[row] = _following(shape.vertices)[edge]
                 self.normal[row] = shape.normals[edge]
+        if before:
+            edge = np.minimum(np.arange(edges), former - 1)
+            for name in ("is_circle", "radius", "centre", "reach"):
+                setattr(self, name, np.concatenate([getattr(before, name), getattr(self, name)]))
+            for name in ("start", "end", "normal"):
+                setattr(self, name, np.concatenate([getattr(before, name)[:, edge], getattr(self, name)]))
 
     def __len__(self) -> int:
         return len(self.body)

@@ -5,6 +5,7 @@ Position and angle share an array, and so do velocity and spin: all three number
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -59,9 +60,9 @@ class BodyState:
 class BodyParams:
     """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch.
 
-    A table may be replaced at any time by another of its shape. The next step goes by it, and begins without sleep and
-    without the last one's impulses. Tables can't be written into, except a `quadratic_drag` of shape (batch, bodies,
-    3), which gives each world an air of its own. Raises ValueError for values without physical sense.
+    A table may be replaced at any time by another of its shape. The next step goes by it, and bodies whose rows differ
+    begin it awake and without the last one's impulses. Tables can't be written into, except a `quadratic_drag` of shape
+    (batch, bodies, 3), which gives each world an air of its own. Raises ValueError for values without physical sense.
     """
 
     inverse_mass: Array  # (bodies, 3): 1/kg, 1/kg, 1/(kg·m²); 0 for a body that no force moves
@@ -70,15 +71,13 @@ class BodyParams:
     restitution: Array  # (bodies,): 0 to 1; NaN leaves it to the other body
     friction: Array  # (bodies,): Coulomb's coefficient; NaN leaves it to the other body
     group: Ints  # (bodies,): bodies of the same group do not meet, but for group 0
-    version: int  # one more each time a table is replaced
 
     def __init__(self, **tables: object) -> None:
-        vars(self)["version"] = 0
         for name, table in tables.items():
             setattr(self, name, table)
 
     def __setattr__(self, name: str, value: object) -> None:
-        """Replace a table by a copy of `value`."""
+        """Replace a table by a copy of `value`, unless it is equal."""
         table = np.array(value, dtype=np.intp if name == "group" else float)
         before = vars(self).get(name, table)
         most_axes = 3 if name == "quadratic_drag" else before.ndim
@@ -88,9 +87,10 @@ class BodyParams:
         most = 1.0 if name == "restitution" else _LARGEST
         if name != "group" and not ((given >= 0) & (given <= most)).all():
             raise ValueError(f"{name} must be from 0 to {most}, not {table.tolist()}")
+        if name in vars(self) and np.array_equal(table, before, equal_nan=name != "group"):
+            return
         table.flags.writeable = table.ndim == 3
         vars(self)[name] = table
-        vars(self)["version"] += 1
 
     @classmethod
     def empty(cls) -> BodyParams:
@@ -105,6 +105,17 @@ class BodyParams:
 
     def append(self, row: BodyParams) -> None:
         """Add the rows of `row` to every table."""
-        names = vars(row).keys() - {"version"}
-        grown = BodyParams(**{name: np.concatenate([getattr(self, name), getattr(row, name)]) for name in names})
-        vars(self).update(vars(grown), version=self.version + 1)
+        grown = BodyParams(**{name: np.concatenate([table, getattr(row, name)]) for name, table in vars(self).items()})
+        vars(self).update(vars(grown))
+
+    def changed(self, before: Mapping[str, Array | Ints]) -> Bools:
+        """Return which of the bodies of the tables `before`, by name, have other rows now, (bodies,)."""
+        changed = np.zeros(len(before["group"]), dtype=bool)
+        for name, then in before.items():
+            now = getattr(self, name)
+            if now is not then:
+                now = now[: len(changed)] if now.ndim == 1 else now[..., : len(changed), :]
+                differs = (now != then) & ~(np.isnan(now) & np.isnan(then))
+                rows = differs if now.ndim == 1 else differs.any(axis=-1)
+                changed |= rows.any(axis=0) if now.ndim == 3 else rows
+        return changed

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from operator import is_
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,10 @@ class World:
         self.shapes: list[Shape] = []
         self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
-        self._version = -1  # of `params`, for which the following were made
+        self._known: dict[str, Array | Ints] = {}  # tables of `params`, for which the rest is made
+        self._shape_table: ShapeTable
+        self._broad_phase: BroadPhase
+        self._rest: Rest
         self._movers: Span | None = None
 
     @property
@@ -185,15 +189,39 @@ class World:
         self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
 
     def _prepare(self) -> None:
-        """Make anew what depends on bodies and their parameters, if any has been added or replaced."""
-        if self._version == self.params.version:
+        """Bring up to date what depends on bodies and their parameters, if any has been added or replaced.
+
+        What is remembered of other bodies stays, unless others may meet now than before.
+        """
+        if self._up_to_date():
             return
-        self._version = self.params.version
-        self._shape_table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
-        self._broad_phase = BroadPhase(self.params, self._shape_table, self.batch, MARGIN)
-        self._narrow_phase = NarrowPhase(self.params, self._shape_table, self._broad_phase.pairs)
-        self._rest = Rest(self.params, self.state, self.gravity, self.sleeping)
-        self._movers = self._impulses = None
+        params, before, self._known = self.params, self._known, dict(vars(self.params))
+        count, self._movers = len(before.get("group", ())), None
+        kept = before and np.array_equal(params.group[:count], before["group"])
+        if kept and np.array_equal(params.dynamic[:count], before["inverse_mass"][:, 0] > 0):
+            if len(self.bodies) > count:
+                self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic, self._shape_table)
+                self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN, self._broad_phase)
+                self._rest.add(params, self.state)
+            if (changed := params.changed(before)).any():
+                changed = np.append(changed, np.zeros(len(self.bodies) - count, dtype=bool))
+                self._forget(np.broadcast_to(changed, (self.batch, len(changed))))
+                self._rest.wake(np.broadcast_to(changed, (self.batch, len(changed))), self.contacts)
+        else:
+            self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic)
+            self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN)
+            self._rest = Rest(params, self.state, self.gravity, self.sleeping)
+            self.contacts = self._impulses = None
+        self._narrow_phase = NarrowPhase(params, self._shape_table, self._broad_phase.pairs)
+
+    def _up_to_date(self) -> bool:
+        return bool(self._known) and all(map(is_, self._known.values(), vars(self.params).values()))
+
+    def _forget(self, bodies: Bools) -> None:
+        """Drop the remembered impulses of some bodies, (batch, bodies)."""
+        if self._impulses:
+            gone = bodies[self._impulses.world[:, None], self._impulses.body].any(axis=1)
+            self._impulses = self._impulses.take(np.flatnonzero(~gone))
 
     @property
     def movers(self) -> Span:
@@ -231,16 +259,14 @@ class World:
         self.state.refresh_rotation(slice(body, body + 1))
         if not self.params.dynamic[body]:
             self.forget_boxes(slice(body, body + 1))
-        if self._impulses:
-            gone = (self._impulses.body == body).any(axis=1)
-            if worlds is not None:
-                gone &= worlds[self._impulses.world]
-            self._impulses = self._impulses.take(np.flatnonzero(~gone))
+        gone = np.zeros(self.state.active.shape, dtype=bool)
+        gone[slice(None) if worlds is None else worlds, body] = True
+        self._forget(gone)
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Take note that static bodies were put elsewhere, or were given a velocity, by writing into `state`."""
         self._movers = None
-        if self._version == self.params.version:
+        if self._up_to_date():
             self._broad_phase.forget_boxes(bodies)
 
     def untouched(self) -> None:

@@ -26,16 +26,15 @@ LONGEST = 375  # steps of a flight
 
 
 # 2. Where flights begin. Grown up: ai/lander/spawns.py
-def begin(rng, share):
-    """Return a start for each share: at 0 just above the pad, at 1 anywhere, and falling, leaning, turning.
-
-    A state has six rows, x, y, vx, vy, angle, spin, and a column for each lander: all fly at once.
-    """
+def begin(rng, count, anywhere=False):
+    """Return so many starts: in training most are close above the pad, in the exam they are anywhere, and tumbling."""
+    hardness = np.ones(count) if anywhere else 1.2 * rng.random(count) ** 1.4
 
     def spread(reach):
-        return share * rng.uniform(-reach, reach, len(share))
+        return hardness * rng.uniform(-reach, reach, count)
 
-    height = 3.0 + 11.5 * share + spread(5.5)
+    height = 3.0 + 11.5 * hardness + spread(5.5)
+    # A state: rows for x, y, vx, vy, angle and spin, and a column for each lander. All fly at once.
     return np.array([spread(15.0), height, spread(3.0), spread(2.0) - 1.0, spread(0.6), spread(0.5)])
 
 
@@ -68,116 +67,115 @@ def judge(state, strictness=1.0):
     return landed, (touches | gone) & ~landed
 
 
-# 5. Pay. Grown up: ai/lander/rewards.py
-def promise(state):
-    """Return how promising a state is: more of it near the pad, slow and upright."""
+# 5. Reward. Grown up: ai/lander/rewards.py
+def potential(state):
+    """Return how promising a state is: more so near the pad, slow and upright."""
     x, y, vx, vy, angle, _ = state
     return -0.05 * np.hypot(x, y) - 0.1 * np.hypot(vx, vy) - 0.3 * np.abs(angle)
 
 
-def pay(before, after, landed, lost):
-    """Return what a step earns: its gain in promise, less a little for the time, and a point won or lost at the end."""
-    return promise(after) - promise(before) - 0.003 + 1.0 * landed - 1.0 * lost
+def reward(before, after, landed, lost):
+    """Return what a step earns: its gain in potential, less a little for the time, and a point for the ending."""
+    return potential(after) - potential(before) - 0.003 + 1.0 * landed - 1.0 * lost
 
 
-# 6. What the network sees. Grown up: ai/lander/sensing.py
-def see(state):
+# 6. What the network observes. Grown up: ai/lander/sensing.py
+def observe(state):
     """Return a row of seven numbers for each lander, none much larger than 1 near the pad."""
     x, y, vx, vy, angle, spin = state
     columns = [0.3 * x, 0.3 * y, 0.5 * vx, 0.5 * vy, np.sin(angle), np.cos(angle), spin]
     return np.stack(columns, axis=1).astype(np.float32)
 
 
-# 7. The network, from what is seen to what each action is worth. Grown up: ai/nn/layers.py
+# 7. The network: from an observation to the value of each action. Grown up: ai/nn/layers.py
 class Network:
-    """Three layers of weighted sums. After the first two, sums are normalised, and those below 0 become 0."""
+    """Three layers of weighted sums. The first two normalise their sums, and make 0 of what is below (ReLU)."""
 
     def __init__(self, rng, dtype=np.float32):
         shapes = [(7, 64), (64, 64), (64, 6)]
         self.weights = [rng.normal(0.0, np.sqrt(2 / shape[0]), shape).astype(dtype) for shape in shapes]
-        self.weights[2] *= 0.1  # at first, nothing is worth much
+        self.weights[2] *= 0.1  # at first, all values are near 0
         self.biases = [np.zeros(shape[1], dtype) for shape in shapes]
         self.parameters = self.weights + self.biases
-        self.means = [np.zeros_like(values) for values in self.parameters]
-        self.squares = [np.zeros_like(values) for values in self.parameters]
+        self.means = [np.zeros_like(each) for each in self.parameters]
+        self.squares = [np.zeros_like(each) for each in self.parameters]
         self.steps = 0
 
-    def forward(self, values):
-        """Return the worth of every action, (landers, 6); keep what the way back needs."""
+    def forward(self, batch):
+        """Return the value of every action, (landers, 6): the rewards to come if that is done now. Keep each layer."""
         self.inputs, self.normal, self.deviation = [], [], []
         for layer in range(3):
-            self.inputs.append(values)
-            values = values @ self.weights[layer] + self.biases[layer]
+            self.inputs.append(batch)
+            batch = batch @ self.weights[layer] + self.biases[layer]
             if layer < 2:
-                values = values - values.mean(axis=1, keepdims=True)
-                deviation = np.sqrt((values**2).mean(axis=1, keepdims=True) + 1e-5)
-                values = values / deviation
-                self.normal.append(values)
+                batch = batch - batch.mean(axis=1, keepdims=True)
+                deviation = np.sqrt((batch**2).mean(axis=1, keepdims=True) + 1e-5)
+                self.normal.append(batch / deviation)
                 self.deviation.append(deviation)
-                values = np.maximum(values, 0)
-        return values
+                batch = np.maximum(self.normal[layer], 0)
+        return batch
 
-    # 8. The way back. Grown up: ai/nn/network.py
-    def backward(self, slope):
-        """Return the slope of the cost along every parameter, by the chain rule, given that along each output."""
+    # 8. Backpropagation. Grown up: ai/nn/network.py
+    def backward(self, error):
+        """Return the gradient of the cost in every parameter, by the chain rule, from that in each output, `error`."""
         of_weights, of_biases = [], []
         for layer in (2, 1, 0):
             if layer < 2:
                 normal = self.normal[layer]
-                slope = slope * (normal > 0)
-                along = (slope * normal).mean(axis=1, keepdims=True)
-                slope = slope - slope.mean(axis=1, keepdims=True) - along * normal
-                slope = slope / self.deviation[layer]
-            of_weights.insert(0, self.inputs[layer].T @ slope)
-            of_biases.insert(0, slope.sum(axis=0))
-            slope = slope @ self.weights[layer].T
+                error = error * (normal > 0)  # what was made 0 had no effect
+                stretch = (error * normal).mean(axis=1, keepdims=True)
+                error = error - error.mean(axis=1, keepdims=True) - stretch * normal  # nor has what is normalised away
+                error = error / self.deviation[layer]
+            of_weights.insert(0, self.inputs[layer].T @ error)
+            of_biases.insert(0, error.sum(axis=0))
+            error = error @ self.weights[layer].T
         return of_weights + of_biases
 
-    # 9. From slopes to better parameters: Adam (Kingma and Ba 2015). Grown up: ai/nn/optimizers.py
-    def step(self, slopes, rate):
-        """Take a small step down the mean slope, measured by how large slopes usually are."""
+    # 9. From gradients to better parameters: Adam (Kingma and Ba 2015). Grown up: ai/nn/optimizers.py
+    def step(self, gradients, rate):
+        """Take a small step down the mean gradient, measured by how large gradients usually are."""
         self.steps += 1
-        young = np.sqrt(1 - 0.999**self.steps) / (1 - 0.9**self.steps)  # both means began at 0
-        for values, slope, mean, square in zip(self.parameters, slopes, self.means, self.squares, strict=True):
-            mean[:] = 0.9 * mean + 0.1 * slope
-            square[:] = 0.999 * square + 0.001 * slope**2
-            values[:] -= rate * young * mean / (np.sqrt(square) + 1e-7)
+        correction = np.sqrt(1 - 0.999**self.steps) / (1 - 0.9**self.steps)  # both means began at 0
+        for each, gradient, mean, square in zip(self.parameters, gradients, self.means, self.squares, strict=True):
+            mean[:] = 0.9 * mean + 0.1 * gradient
+            square[:] = 0.999 * square + 0.001 * gradient**2
+            each[:] -= rate * correction * mean / (np.sqrt(square) + 1e-7)
 
 
-# 10. The memory, a film with a row for each step and a column for each lander. Grown up: ai/agent/replay.py
-MOMENT = np.dtype([("seen", np.float32, 7), ("action", int), ("pay", np.float32), ("over", bool)])
+# 10. Replay memory: a row for each step, a column for each lander, like a film. Grown up: ai/agent/replay.py
+MOMENT = np.dtype([("observation", np.float32, 7), ("action", int), ("reward", np.float32), ("over", bool)])
 
 
 # 11. Deep Q-learning (Mnih et al. 2015). Grown up: ai/agent/agent.py
 BATCH = 128
-AHEAD = 8  # steps that are looked up in the film; what comes after them is guessed by the network
-DISCOUNT = 0.985  # what is earned a step later counts so much
+AHEAD = 8  # rewards of so many steps are looked up in the memory; the network guesses what comes after them
+DISCOUNT = 0.985  # a reward one step later counts so much
 
 
-def choose(network, seen, daring, rng):
-    """Return the action worth most for each lander, or with a chance of `daring` a random one (ε-greedy)."""
-    action = network.forward(seen).argmax(axis=1)
-    dares = rng.random(len(action)) < daring
+def choose(network, observation, epsilon, rng):
+    """Return the action of the greatest value for each lander, or with chance `epsilon` a random one."""
+    action = network.forward(observation).argmax(axis=1)
+    random = rng.random(len(action)) < epsilon
     chances = [0.23, 0.23, 0.23, 0.10, 0.10, 0.11]  # a main engine fired half the time would only hover
-    action[dares] = rng.choice(6, dares.sum(), p=chances)
+    action[random] = rng.choice(6, random.sum(), p=chances)
     return action
 
 
-def learn(network, steady, film, rate, rng):
-    """Draw moments from the film, and bring the worth of what was done there closer to what came of it."""
-    step = rng.integers(len(film) - AHEAD, size=BATCH)
-    lander = rng.integers(film.shape[1], size=BATCH)
-    goal, counts = np.zeros(BATCH), np.ones(BATCH)
+def learn(network, target, memory, rate, rng):
+    """Draw moments from the memory, and move the values of what was done closer to what came of it."""
+    step = rng.integers(len(memory) - AHEAD, size=BATCH)
+    lander = rng.integers(memory.shape[1], size=BATCH)
+    goal, discount = np.zeros(BATCH), np.ones(BATCH)
     for later in range(AHEAD):
-        goal += counts * film["pay"][step + later, lander]
-        counts *= DISCOUNT * ~film["over"][step + later, lander]  # 0 once the flight is over
-    goal += counts * steady.forward(film["seen"][step + AHEAD, lander]).max(axis=1)
-    worth = network.forward(film["seen"][step, lander])
-    done = np.arange(BATCH), film["action"][step, lander]
-    slope = np.zeros_like(worth)
-    slope[done] = (worth[done] - goal).clip(-1, 1) / BATCH  # of the squared error, and straight beyond 1 (Huber)
-    network.step(network.backward(slope), rate)
-    for slow, fast in zip(steady.parameters, network.parameters, strict=True):
+        goal += discount * memory["reward"][step + later, lander]
+        discount *= DISCOUNT * ~memory["over"][step + later, lander]  # 0 once the flight is over
+    goal += discount * target.forward(memory["observation"][step + AHEAD, lander]).max(axis=1)
+    values = network.forward(memory["observation"][step, lander])
+    done = np.arange(BATCH), memory["action"][step, lander]
+    error = np.zeros_like(values)
+    error[done] = (values[done] - goal).clip(-1, 1) / BATCH  # of Huber's cost: squared, but straight beyond 1
+    network.step(network.backward(error), rate)
+    for slow, fast in zip(target.parameters, network.parameters, strict=True):
         slow[:] += 0.01 * (fast - slow)
 
 
@@ -185,29 +183,32 @@ def learn(network, steady, film, rate, rng):
 def train(seed, steps=3600, landers=256, tell=print):
     """Return a network that has learned from nothing, in so many steps of so many landers."""
     rng = np.random.default_rng(seed)
-    network, steady = Network(rng), Network(rng)  # the second follows the first slowly, and is the better judge
-    film = np.zeros((steps, landers), MOMENT)
-    state, age = begin(rng, 1.2 * rng.random(landers) ** 1.4), np.zeros(landers, int)
+    network = Network(rng)
+    target = Network(rng)  # it follows the other slowly: goals that ran away with every step could not be reached
+    memory = np.zeros((steps, landers), MOMENT)
+    state = begin(rng, landers)
+    age = np.zeros(landers, int)
     endings, told = [], time.process_time()
     for step in range(steps):
-        now, left = film[step], 1 - step / steps
-        daring = max(0.05, 3.0 * left - 2.0) ** np.linspace(1.0, 0.3, landers)  # some go on daring more than others
-        now["seen"] = see(state)
-        now["action"] = choose(network, now["seen"], daring, rng)
+        left = 1 - step / steps
+        epsilon = max(0.05, 3.0 * left - 2.0) ** np.linspace(1.0, 0.3, landers)  # the last landers dare the most
+        now = memory[step]
+        now["observation"] = observe(state)
+        now["action"] = choose(network, now["observation"], epsilon, rng)
         before, state = state, fly(state, now["action"])
         landed, lost = judge(state, strictness=0.7)  # what is learned with a margin holds when it counts
+        now["reward"] = reward(before, state, landed, lost)
         age += 1
-        now["over"] = over = landed | lost | (age == LONGEST)
-        now["pay"] = pay(before, state, landed, lost)
-        state[:, over] = begin(rng, 1.2 * rng.random(over.sum()) ** 1.4)
-        age[over] = 0
-        endings = (endings + landed[over].tolist())[-500:]
+        now["over"] = landed | lost | (age == LONGEST)
+        endings = (endings + landed[now["over"]].tolist())[-500:]
+        state[:, now["over"]] = begin(rng, now["over"].sum())
+        age[now["over"]] = 0
         for _ in range(8 if step > AHEAD else 0):
-            learn(network, steady, film[:step], 0.002 * left, rng)
+            learn(network, target, memory[:step], 0.002 * left, rng)
         if endings and time.process_time() > told + 1:
             told = time.process_time()
             tell(f"{(step + 1) * landers:7,} decisions, landed {np.mean(endings):4.0%} of the last {len(endings)}")
-    return steady
+    return target
 
 
 # 13. The exam. Grown up: ai/cli/evaluate.py
@@ -215,7 +216,7 @@ def examine(network, state):
     """Return which starts the network lands from."""
     landed, lost = judge(state)
     for _ in range(LONGEST):
-        state = fly(state, network.forward(see(state)).argmax(axis=1))
+        state = fly(state, network.forward(observe(state)).argmax(axis=1))
         lands, loses = judge(state)
         landed |= lands & ~lost
         lost |= loses & ~landed
@@ -233,8 +234,8 @@ def show(network, state):
             time.sleep(3 * DT * os.isatty(1))
         if landed or lost:
             break
-        state = fly(state, network.forward(see(state)).argmax(axis=1))
-    print(" " * 35 + "=======")
+        state = fly(state, network.forward(observe(state)).argmax(axis=1))
+    print(" " * 37 + "=======")
 
 
 if __name__ == "__main__":
@@ -244,6 +245,6 @@ if __name__ == "__main__":
     network = train(seed)
     seconds = time.process_time()
     rng = np.random.default_rng([seed, 1])  # starts that it has never seen
-    show(network, begin(rng, np.ones(1)))
-    share = examine(network, begin(rng, np.ones(1000))).mean()
+    show(network, begin(rng, 1, anywhere=True))
+    share = examine(network, begin(rng, 1000, anywhere=True)).mean()
     print(f"landed {100 * share:.1f} % of 1,000 unseen starts after {seconds:.0f} s")

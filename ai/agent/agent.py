@@ -128,17 +128,14 @@ class DeepQAgent:
 
     def store(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
         """Store the result of `actions` (n,) at `observation` (n, features); `success` (n,) marks good endings."""
-        transitions, slots = self.n_step.add(
-            observation,
-            actions,
-            result.reward * np.float32(self.config.reward_scale),
-            result.observation,
-            result.terminated,
-            result.ended,
-        )
-        self.decisions += len(actions)
+        before, after = observation, result.observation
         if self.normalizer:
-            self.normalizer.update(observation)
+            self.normalizer.begin(before)
+            before, after = self.normalizer.measured(before), self.normalizer.measured(after)
+            self.normalizer.update(before)
+        reward = result.reward * np.float32(self.config.reward_scale)
+        transitions, slots = self.n_step.add(before, actions, reward, after, result.terminated, result.ended)
+        self.decisions += len(actions)
         if not len(slots):
             return
         self.replay.add(transitions)
@@ -173,7 +170,7 @@ class DeepQAgent:
         if self.config.mirror and self.symmetry is not None:
             transitions = self.symmetry.apply(transitions, batch_size, batch_size // 2)
         if self.normalizer:
-            state, next_state = self.normalizer(transitions.state), self.normalizer(transitions.next_state)
+            state, next_state = map(self.normalizer.scaled, (transitions.state, transitions.next_state))
             transitions = transitions._replace(state=state, next_state=next_state)
         targets, values = self.targets(transitions)
         errors = np.empty_like(targets)

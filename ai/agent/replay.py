@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -94,7 +95,7 @@ class ReplayBuffer:
 
     def state(self, most: int) -> dict[str, NDArray[Any]]:
         """Return copies of the newest transitions, at most so many, oldest first: each field by its name."""
-        return self.at(self._newest(most))._asdict()
+        return self.at(self.newest(most))._asdict()
 
     def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
         """Fill an empty buffer with what `state` returned.
@@ -112,7 +113,7 @@ class ReplayBuffer:
         """Forget all transitions."""
         self._drop(self.size)
 
-    def _newest(self, most: int) -> Ints:
+    def newest(self, most: int) -> Ints:
         """Return the rows of the newest transitions, at most so many, oldest first."""
         return (self.start + np.arange(max(0, self.size - most), self.size)) % self.capacity
 
@@ -170,7 +171,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 
     def state(self, most: int) -> dict[str, NDArray[Any]]:
         """Return copies of the newest transitions, with their priorities."""
-        return super().state(most) | {"priorities": self.priorities[self._newest(most)]}
+        return super().state(most) | {"priorities": self.priorities[self.newest(most)]}
 
     def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
         """Fill an empty buffer with what `state` returned; raises as that of every buffer."""
@@ -178,7 +179,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         priorities = array_like(np.empty(self.size), state["priorities"], "priorities")
         if (priorities <= 0).any():
             raise ValueError("priorities are above 0")
-        self.priorities[self._newest(self.size)] = priorities
+        self.priorities[self.newest(self.size)] = priorities
         self.largest = max(self.largest, float(priorities.max(initial=0.0)))
 
     def _drop(self, count: int) -> None:
@@ -187,9 +188,26 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 
 
 def make_replay(config: AgentConfig, num_features: int) -> ReplayBuffer:
-    """Make the empty replay buffer of a configuration, for observations of so many features."""
+    """Make the empty replay buffer of a configuration, for observations of so many features.
+
+    Raises ValueError for one that is larger than this machine's memory.
+    """
+    size = config.replay_size * (8 * num_features + 16)
+    if size > _memory():
+        raise ValueError(
+            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take {size / 1e9:,.1f} GB, "
+            f"and this machine has {_memory() / 1e9:,.1f}"
+        )
     if config.prioritised:
         return PrioritisedReplayBuffer(
             config.replay_size, num_features, config.replay_prune, config.priority_exponent, config.importance_exponent
         )
     return ReplayBuffer(config.replay_size, num_features, config.replay_prune)
+
+
+def _memory() -> float:
+    """Return how many bytes of memory this machine has; endless where it does not say."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return float("inf")

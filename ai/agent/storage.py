@@ -69,7 +69,7 @@ def write_agent(agent: DeepQAgent, folder: Path) -> None:
     agent.online.save(folder / "online")
     agent.target.save(folder / "target")
     np.savez(folder / OPTIMIZER_FILE, allow_pickle=False, **agent.optimizer.state())
-    (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+    (folder / AGENT_FILE).write_text(json.dumps(described, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -> A:

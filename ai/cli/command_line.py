@@ -27,6 +27,7 @@ LONGEST: Final = 400  # letters of a printed line: text from a file or an argume
 SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
 EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
+_ASKED: Final = 5  # times that a program is asked to end before it does so in the midst of what it does
 _REQUESTS: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # signals that ask a program to end
 
 # Errors of reading a path or settings that the user has named. A loop of links and JSON that is nested too deeply
@@ -97,7 +98,14 @@ def folder(text: str) -> Path:
 
 
 def reason(error: BaseException) -> str:
-    """Say why something was refused, without the numbers and names that only help a programmer."""
+    """Say why something was refused, without the numbers and names that only help a programmer.
+
+    Of somebody else's code that has failed, those go to a log.
+    """
+    from ai.environment import ForeignEnvError
+
+    if isinstance(error, ForeignEnvError) and error.__cause__ is not None:
+        return f"{error}{_logged(error.__cause__)}"
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     if isinstance(error, MemoryError):
@@ -105,6 +113,20 @@ def reason(error: BaseException) -> str:
     if isinstance(error, RecursionError):
         return "a file or a setting is nested too deeply"
     return str(error) or type(error).__name__
+
+
+def _logged(error: BaseException) -> str:
+    """Write where an error comes from to the log of environments, if that can be; return words that name the file."""
+    import traceback
+
+    from ai.files import user_dir, write_text
+
+    path = user_dir() / "environment.log"
+    try:
+        write_text(path, "".join(traceback.format_exception(error)))
+    except (OSError, ValueError):
+        return ""
+    return f" (its traceback is in {path})"
 
 
 def refusing(command: Command) -> Command:
@@ -127,25 +149,39 @@ def check_ranges(arguments: argparse.Namespace, **ranges: tuple[float, float]) -
     for name, (low, high) in ranges.items():
         value = getattr(arguments, name, None)
         if value is not None and not low <= value <= high:
-            raise ValueError(f"--{name} lies between {low:,} and {high:,}, and was {value}")
+            raise ValueError(f"--{name.replace('_', '-')} lies between {low:,} and {high:,}, and was {value}")
 
 
 def configured(preset: Settings, given: list[str]) -> Settings:
     """Return the preset with some settings changed, each as NAME=VALUE; raises ValueError for nonsense."""
     values = preset.to_json()
-    for change in given:
-        name, equals, text = change.partition("=")
-        if not equals or name not in values:
+    for change, (name, value) in zip(given, named_values("--set", given), strict=False):
+        if name not in values:
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
-        try:
-            value = json.loads(text)
-        except RecursionError:
-            raise ValueError(f"--set {name}: that is nested too deeply") from None
-        except ValueError:
-            value = text
         parts = isinstance(value, dict) and isinstance(values[name], dict)  # those not named stay as they are
         values[name] = values[name] | value if parts else value
     return preset.from_json(values)
+
+
+def named_values(option: str, given: list[str]) -> Iterator[tuple[str, Any]]:
+    """Yield names and values of an option that takes NAME=VALUE: a value in JSON, or else a text."""
+    for change in given:
+        name, equals, text = change.partition("=")
+        if not equals or not name:
+            raise ValueError(f"{option} takes NAME=VALUE, not {change!r}")
+        try:
+            value = json.loads(text)
+        except RecursionError:
+            raise ValueError(f"{option} {name}: that is nested too deeply") from None
+        except ValueError:
+            value = text
+        yield name, value
+
+
+def env_arguments(before: str, given: list[str]) -> str:
+    """Return arguments of an environment as its settings hold them, with those given in place of the ones before."""
+    arguments = dict(named_values("--env-set", given))
+    return json.dumps(json.loads(before or "{}") | arguments, sort_keys=True, allow_nan=False) if arguments else before
 
 
 @contextmanager
@@ -153,13 +189,16 @@ def stoppable(*names: str) -> Iterator[list[int]]:
     """Collect Ctrl-C and termination signals in the list, so that they never cut short a step or its save.
 
     An entry is the number of a signal; `names` are of other signals to collect in place of these. A hang-up that is
-    ignored (nohup) is none. Meant for the main thread; afterwards, signals do what they did before.
+    ignored (nohup) is none. Meant for the main thread; afterwards, signals do what they did before. Whoever asks again
+    and again is heard at once, by a KeyboardInterrupt: somebody else's code may never come back.
     """
     stop: list[int] = []
     terminals, hang_up = [number for number in (1, 2) if os.isatty(number)], getattr(signal, "SIGHUP", None)
 
     def note(number: int, _: FrameType | None) -> None:
         stop.append(number)
+        if len(stop) >= _ASKED:
+            raise KeyboardInterrupt
         if number == hang_up:  # writing to terminals that are closed would fail
             void = os.open(os.devnull, os.O_WRONLY)
             for terminal in terminals:

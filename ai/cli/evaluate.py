@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
-    from ai.training.tasks import Score
+    from ai.training.tasks import Score, Trial
 
 _SHARES: Final = ("success", "crash", "out_of_bounds", "time_out")
 
@@ -23,6 +23,7 @@ def add_commands(commands: Any) -> None:
     land.add_argument("--env", metavar="NAME", help="the environment, where its name is module:Name")
     land.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
     land.add_argument("--seed", type=int, default=0)
+    land.add_argument("--frame-skip", type=int, metavar="N", help="steps that a decision is held (default: as trained)")
     land.add_argument("--spawn", help="random or hard (default: random)")
     flown = land.add_mutually_exclusive_group(required=True)
     flown.add_argument("--pilot", type=Path, metavar="FILE", help="a pilot of your own in place of a network")
@@ -38,7 +39,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.lander.spawns import SPAWNS
     from ai.training.statistics import wilson
 
-    cli.check_ranges(arguments, episodes=cli.EPISODES, seed=cli.SEEDS)
+    cli.check_ranges(arguments, episodes=cli.EPISODES, seed=cli.SEEDS, frame_skip=(1, 100))
     if arguments.spawn not in (None, *SPAWNS):
         raise ValueError(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
     score = _own(arguments) if arguments.pilot else _score(arguments)
@@ -63,7 +64,7 @@ def _score(arguments: argparse.Namespace) -> Score:
     """Measure a network; raises ValueError for options that do not fit its environment."""
     from ai.training.config import LANDER, load_agent
     from ai.training.loop import task_of
-    from ai.training.tasks import evaluate
+    from ai.training.tasks import flights
 
     agent, config = load_agent(arguments.model, env=arguments.env)
     if arguments.env not in (None, config.env):
@@ -73,23 +74,42 @@ def _score(arguments: argparse.Namespace) -> Score:
         raise ValueError(f"the network in {arguments.model} is not made for {config.env}")
     episodes = arguments.episodes or task.test_episodes
     if config.env == LANDER:
-        return evaluate(agent, episodes, arguments.seed, arguments.spawn or "random", config.frame_skip)
+        skip = arguments.frame_skip or config.frame_skip
+        return _finished(flights(agent, episodes, arguments.seed, arguments.spawn or "random", skip))
     if arguments.spawn is not None:
         raise ValueError(f"--spawn is for the lander on the moon; this network is for {config.env}")
-    score: Score = task.evaluate(agent, episodes, arguments.seed)
-    return score
+    return _finished(task.trial(agent, episodes, arguments.seed, arguments.frame_skip))
+
+
+def _finished(trial: Trial[Score]) -> Score:
+    """Take a measurement to its end; a signal that asks the program to end is heard between two decisions."""
+    with cli.stoppable() as stop:
+        try:
+            while not stop:
+                next(trial)
+        except StopIteration as done:
+            score: Score = done.value
+            return score
+        except ValueError:
+            if not stop:  # else it only ends what is to end
+                raise
+        finally:
+            trial.close()
+    raise SystemExit(128 + stop[0])
 
 
 def _own(arguments: argparse.Namespace) -> Score:
     """Fly the flights with a player's file, all at once; raises ValueError for what is wrong with it."""
     from ai.pilots.own import MeasuredPilot
-    from ai.training.tasks import LanderTask, evaluate
+    from ai.training.tasks import LanderTask, flights
 
     if arguments.env is not None:
         raise ValueError("--env is for networks")
     with closing(MeasuredPilot(arguments.pilot)) as pilot:
         episodes = arguments.episodes or LanderTask.test_episodes
-        return evaluate(pilot, episodes, arguments.seed, arguments.spawn or "random")
+        return _finished(
+            flights(pilot, episodes, arguments.seed, arguments.spawn or "random", arguments.frame_skip or 4)
+        )
 
 
 @cli.refusing

@@ -107,8 +107,7 @@ def _place(arguments: argparse.Namespace) -> Path:
         return Path(name)
     if name in (".", ".."):
         raise ValueError(f"--study takes a name, or the path of a folder, such as {name}/first")
-    folder: Path = arguments.user_dir or user_dir()
-    return folder / STUDIES / name
+    return Path(arguments.user_dir or user_dir(), STUDIES, name)
 
 
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
@@ -155,6 +154,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     check_ready(config)
     space = knob_space(config, names) if arguments.space is None else read_space(config, arguments.space)
     if arguments.digits and arguments.knobs is None:
-        space.pop("epochs", None)  # it is the budget
+        for name in ("epochs", "held_out"):  # they say how long each trains, and what it is measured with
+            space.pop(name, None)
     given = {name: getattr(arguments, name) for name in (*_PLAN, "trials")}
     return Plan.of(config, space, **{name: value for name, value in given.items() if value is not None})

@@ -34,6 +34,14 @@ def add_commands(commands: Any) -> None:
     read = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
     add = land.add_argument
     add("--env", metavar="NAME", help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)")
+    add(
+        "--env-set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        dest="arguments",
+        help="an argument of that environment, such as --env-set max_episode_steps=500",
+    )
     add("--preset", help="modern, classic or anywhere, which lands on any world (default: modern, or as --env needs)")
     add("--decisions", type=int, help="stop when the whole run, resumed or not, has taken so many decisions")
     add("--validation", type=int, metavar="N", help="episodes that choose the best network")
@@ -76,7 +84,8 @@ def lander_config(arguments: argparse.Namespace, begun: Config | None = None) ->
     env = (begun or preset).env if arguments.env is None else arguments.env
     if not begun and arguments.preset is None and env != LANDER:
         preset = LANDS_ANYWHERE if env == ANYWHERE else gym_config(env)
-    return cli.configured(preset.changed(env=env), arguments.changes)
+    config = cli.configured(preset.changed(env=env), arguments.changes)
+    return config.changed(env_arguments=cli.env_arguments(config.env_arguments, getattr(arguments, "arguments", [])))
 
 
 def digit_config(arguments: argparse.Namespace, begun: DigitConfig | None = None) -> DigitConfig:
@@ -152,30 +161,41 @@ def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
 
 
 def _train_and_keep(training: Run, output: Path, limit: Limit) -> int:
+    from ai.environment import ForeignEnvError
+
     stopped, saved = "", False
     try:
         with cli.stoppable() as stop:
+            training.stopping = lambda: bool(stop)
             try:
                 _advance(training, output, limit, stop)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
                 training.restore_best()
+            except ForeignEnvError as error:
+                stopped = f"training stopped: {cli.reason(error)}. "
             # Save before measuring, which takes seconds: the user may stop the program meanwhile.
             output, described = _kept(training, output, final=False)
             saved = True
         if not stopped:
-            output, described = _kept(training, output, final=True)
+            with cli.stoppable() as again:
+                training.stopping = lambda: bool(again)
+                output, described = _kept(training, output, final=True)
+    except ForeignEnvError as error:
+        return cli.fail(f"kept in {output}, and not measured: {cli.reason(error)}")
     except OSError as error:
         return cli.fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
         return cli.fail(f"{stopped}{'' if saved else f'Nothing new is kept in {output}: '}{error}")
+    finally:
+        training.close()
     if stopped:
         what = "What was best until then" if training.best else "The last network, which has not been measured,"
         return cli.fail(f"{stopped}{what} is kept in {output}.")
     read = described.get("test")  # of digits alone
     verdict = training.best if read is None else f"{read:.2%} of MNIST's test images read right"
-    cli.say(f"kept in {output}: {verdict}")
-    return cli.exit_code(stop)
+    cli.say(f"kept in {output}: {verdict or 'not measured'}")
+    return cli.exit_code(stop or again)
 
 
 def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None:

@@ -129,7 +129,7 @@ def explain(before: Before, cell: Transition, flown: Flown | None = None) -> Les
 
 _AGENT: Final[tuple[Function, ...]] = (
     DeepQAgent.learn, DeepQAgent._learn_from, DeepQAgent.targets, DeepQAgent._next_value,
-    DeepQAgent.gradient_step, DeepQAgent._update_target, Normalizer.__call__, NStep.add,
+    DeepQAgent.gradient_step, DeepQAgent._update_target, Normalizer.scaled, NStep.add,
 )  # fmt: skip
 
 

@@ -205,7 +205,7 @@ def _put(new: Path, target: Path, kind: FolderKind | None) -> None:
         try:
             new.rename(target)
         except OSError:  # a reader may have put the old one back meanwhile
-            if last or not kind:
+            if last or not kind or not target.exists():
                 raise
         else:
             return

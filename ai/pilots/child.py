@@ -11,6 +11,7 @@ import importlib.util
 import inspect
 import linecache
 import os
+import signal
 import sys
 import traceback
 from collections.abc import Callable
@@ -58,8 +59,10 @@ def serve(link: Connection, path: str, source: str, kind: str) -> None:
 
 def _stand_alone(path: str) -> None:
     """Leave the terminal's Ctrl-C to whoever started this; what the file prints goes to standard error."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # drops one that came meanwhile, too
     if hasattr(os, "setsid"):
         os.setsid()
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     try:
         os.dup2(2, 1)
     except OSError:  # an app without a terminal
@@ -138,14 +141,15 @@ def _module(path: str, source: str) -> Any:
     sys.modules[name] = module
     # Not what is on the disk by the time that somebody looks.
     linecache.cache[path] = len(source), None, source.splitlines(keepends=True), path
-    exec(compile(source, path, "exec", dont_inherit=True), vars(module))
+    exec(compile(source.removeprefix("\ufeff"), path, "exec", dont_inherit=True), vars(module))  # as some editors begin
     return module
 
 
 def _function(names: dict[str, Any], name: str) -> Callable[..., Any]:
     if not callable(function := names.get(name)):
         raise AnswerError(f"there is no function {name} in it")
-    if inspect.iscoroutinefunction(function) or inspect.isasyncgenfunction(function):
+    flags = (inspect.iscoroutinefunction, inspect.isasyncgenfunction)
+    if any(is_async(each) for is_async in flags for each in (function, type(function).__call__)):
         raise AnswerError(f"{name} is async: it must be a plain function, def {name}")
     return function  # type: ignore[no-any-return]
 

@@ -157,6 +157,8 @@ class Plan:
             raise ValueError("a study searches at least one knob")
         if "env" in self.space:
             raise ValueError("a study has one environment: env cannot be searched")
+        if self.settings.get("held_out") == 0 and "held_out" not in self.space:
+            raise ValueError("a study of digits needs images held out: held_out was 0")
         if unknown := [name for name in self.space if name not in known]:
             raise ValueError(f"there is no setting called {unknown[0]}")
 
@@ -177,7 +179,7 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
         raise ValueError(f"there is no setting called {name}")
     kind, described = str(item.type), item.metadata
     choices = described["choices"] or described["offers"] or ((False, True) if kind == "bool" else ())
-    if asked:
+    if asked not in (None, {}):
         choices = asked if isinstance(asked, list) else ()
     if not choices and (described["low"] is None or kind not in ("int", "float")):
         raise ValueError(f"{name} has no range and no choices to search; give it choices in a file")
@@ -185,12 +187,14 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
         dimension = Dimension(choices=tuple(list(each) if isinstance(each, tuple) else each for each in choices))
     else:
         own = {end: described[end] for end in ("low", "high", "log")}
-        if asked and not (isinstance(asked, Mapping) and set(asked) <= set(own)):
+        if asked is not None and not (isinstance(asked, Mapping) and set(asked) <= set(own)):
             raise ValueError(f"{name}: a range is low, high and log, or a list of choices")
         try:
-            dimension = read_as(Dimension, own | {"whole": kind == "int"} | (asked or {}))
+            dimension = read_as(Dimension, own | {"whole": kind == "int"} | dict(asked or {}))
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
+    if dimension.whole and (dimension.low % 1 or dimension.high % 1):
+        raise ValueError(f"{name} takes whole numbers: its range begins and ends with one")
     for value in dimension.choices or (dimension.low, dimension.high):
         if problem := config.problem_of(name, config.value_from_json(name, int(value) if dimension.whole else value)):
             raise ValueError(problem)
@@ -216,7 +220,10 @@ def read_space(config: Knobs, file: Path) -> Space:
     {"learning_rate": {"low": 1e-4, "high": 1e-2}, "n_step": {}, "optimizer": ["adam", "momentum"]}. Raises OSError, or
     ValueError for what makes no sense.
     """
-    asked = read_json(file)
+    try:
+        asked = read_json(file)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
     if not isinstance(asked, dict) or not asked:
         raise ValueError(f"{file}: a space is a range by the name of each knob")
     return {name: knob_dimension(config, name, each) for name, each in asked.items()}

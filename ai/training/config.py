@@ -36,6 +36,7 @@ class Config(AgentConfig):
                               "exploration", low=0.0, high=1.0, live=True)
     env: str = knob(LANDER, "Environment to learn: our lander, lander-anywhere, or one of Gymnasium by its name.",
                     "task")
+    env_arguments: str = knob("", "Arguments that it is made with, as a JSON object.", "task")
     num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
     spawn: str = knob("thorough", "Where flights begin.", "lander", choices=_STARTS)

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ai.agent.symmetry import Symmetry
-from ai.environment import SUCCESS, Bools, Doubles, Floats, Ints, StepResult
+from ai.environment import SUCCESS, ForeignEnvError, Ints
+from ai.files import Count, brief, parse_json, shown
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
+from ai.training.gym_env import GOING_ON, GymEnv, asked, features_of
 from ai.training.tasks import Score, Task, Trial
 
 if TYPE_CHECKING:
     import gymnasium
 
-GOING_ON: Final = 0
-FAILED: Final = 2
+AT_ONCE: Final = 16  # environments of a measurement, at most
+LIMIT: Final = 1000  # steps of an episode where an environment names no limit of its own
+LONGEST: Final = 10_000  # steps of one, whatever it names
 # Steps after which an episode of training is cut short: a lander that hovers teaches nothing new. Measuring cuts none.
 PATIENCE: Final = {"LunarLander-v3": 400}
 MIRRORS: Final = {  # of environments that look the same in a mirror
@@ -37,76 +40,20 @@ class GymScore(Score):
     success: float | None  # share that reached the environment's own threshold; None if it names none
     mean_return: float
     mean_length: float  # decisions
+    cut: Count  # episodes that had no end of their own, and were ended after `limit` steps
+    limit: Count
+    frame_skip: Count  # steps for which each decision was held
 
     def better_than(self, other: GymScore | None) -> bool:
-        return other is None or self.mean_return > other.mean_return
+        return math.isfinite(self.mean_return) and (other is None or not other.mean_return >= self.mean_return)
 
     @property
     def figure(self) -> str:
         return f"{self.mean_return:.1f}"
 
     def __str__(self) -> str:
-        return f"a mean return of {self.figure} over {self.episodes} validation episodes"
-
-
-class GymEnv:
-    """Several environments of Gymnasium as one of ours (`ai.environment.Env`), stepped one by one."""
-
-    def __init__(
-        self,
-        make: Callable[[], gymnasium.Env[Any, Any]],
-        num_envs: int,
-        rng: np.random.Generator,
-        threshold: float | None = None,
-        frame_skip: int = 1,
-    ) -> None:
-        self.num_envs, self.threshold, self.frame_skip = num_envs, threshold, frame_skip
-        self.landings, self.stage = 0, 0
-        self._envs = [make() for _ in range(num_envs)]
-        self._seeds: list[int | None] = rng.integers(2**31, size=num_envs).tolist()
-        self._first_action = int(getattr(self._envs[0].action_space, "start", 0))
-        shape = self._envs[0].observation_space.shape
-        assert shape is not None
-        self._observation: Floats = np.zeros((num_envs, int(np.prod(shape))), dtype=np.float32)
-        self.returns: Doubles = np.zeros(num_envs)
-        self.lengths: Ints = np.zeros(num_envs, dtype=np.intp)
-        self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
-        self._terminated, self._truncated = np.zeros((2, num_envs), dtype=bool)
-
-    def reset(self, mask: Bools | None = None) -> Floats:
-        for slot in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
-            # Seeded once; from then on each environment goes on with its own stream.
-            seed, self._seeds[slot] = self._seeds[slot], None
-            observation, _ = self._envs[slot].reset(seed=seed)
-            self._observation[slot] = np.ravel(observation)
-            for kept in (self.returns, self.lengths, self.outcome, self._terminated, self._truncated):
-                kept[slot] = 0
-        return self._observation.copy()
-
-    def step(self, actions: Ints) -> StepResult:
-        reward = np.zeros(self.num_envs, dtype=np.float32)
-        for slot in np.flatnonzero(self.outcome == GOING_ON).tolist():
-            reward[slot] = self._step_one(slot, int(actions[slot]))
-        return StepResult(
-            self._observation.copy(), reward, self._terminated.copy(), self._truncated.copy(), self.outcome.copy()
-        )
-
-    def _step_one(self, slot: int, action: int) -> float:
-        total, ended = 0.0, False
-        for _ in range(self.frame_skip):
-            observation, reward, terminated, truncated, _ = self._envs[slot].step(action + self._first_action)
-            total += float(reward)
-            if ended := terminated or truncated:
-                break
-        self._observation[slot] = np.ravel(observation)
-        self._terminated[slot], self._truncated[slot] = terminated, truncated
-        self.returns[slot] += total
-        self.lengths[slot] += 1
-        if ended:
-            succeeded = self.threshold is not None and self.returns[slot] >= self.threshold
-            self.outcome[slot] = SUCCESS if succeeded else FAILED
-            self.landings += int(succeeded)
-        return total
+        cut = f", {self.cut} of them ended after {self.limit:,} steps" if self.cut else ""
+        return f"a mean return of {self.figure} over {self.episodes} validation episodes{cut}"
 
 
 class GymTask(Task[GymScore]):
@@ -122,46 +69,88 @@ class GymTask(Task[GymScore]):
         except ImportError as error:
             raise ImportError('this needs Gymnasium: pip install -e ".[gym]"') from error
         self.symmetry = MIRRORS.get(config.env)
-        self._gymnasium = gymnasium
+        self._gymnasium, self.arguments = gymnasium, env_arguments(config)
         env = self._make()
-        observations, actions, spaces = env.observation_space, env.action_space, gymnasium.spaces
-        if not isinstance(observations, spaces.Box) or not isinstance(actions, spaces.Discrete):
-            raise ValueError(
-                f"{config.env} observes {observations} and acts in {actions}; "
-                "deep Q-learning needs a Box of observations and Discrete actions"
-            )
-        self.num_features, self.num_actions = int(np.prod(observations.shape)), int(actions.n)
-        self.threshold = env.spec.reward_threshold if env.spec else None
-        env.close()
-
-    def _make(self, patience: int | None = None) -> gymnasium.Env[Any, Any]:
         try:
-            env: gymnasium.Env[Any, Any] = self._gymnasium.make(
-                self.config.env, max_episode_steps=patience, disable_env_checker=True
-            )
-        except (self._gymnasium.error.Error, ImportError, ValueError) as error:
-            hint = ""
-            if isinstance(error, self._gymnasium.error.DependencyNotInstalled):
-                # The advice of the error itself would bring plain pygame, which breaks pygame-ce.
-                hint = ". Do not take Gymnasium's own extras; for Box2D, pip install box2d"
-            raise ValueError(f"{self.config.env}: {error}{hint}") from error
+            observations, actions = asked(config.env, "its spaces", lambda: (env.observation_space, env.action_space))
+            spaces, spec = gymnasium.spaces, env.spec
+            if not isinstance(observations, spaces.Box | spaces.Discrete) or not isinstance(actions, spaces.Discrete):
+                raise ValueError(
+                    f"{config.env} observes {brief(observations)} and acts in {brief(actions)}; "
+                    "deep Q-learning needs a Box or Discrete observations, and Discrete actions"
+                )
+            self.num_features, self.num_actions = features_of(observations), int(actions.n)
+        finally:
+            with suppress(Exception, SystemExit):
+                env.close()
+        self.threshold = spec.reward_threshold if spec else None
+        named = spec.max_episode_steps if spec else None
+        self.limit = named if named and "max_episode_steps" in self.arguments else min(named or LIMIT, LONGEST)
+
+    def _make(self) -> gymnasium.Env[Any, Any]:
+        name, errors = self.config.env, self._gymnasium.error
+        module, colon, _ = name.partition(":")
+        if colon and not all(part.isidentifier() for part in module.split(".")):
+            raise ValueError(f"{name}: {module} is no name of a module, as in --env module:Name-v0")
+        try:
+            env: gymnasium.Env[Any, Any] = self._gymnasium.make(name, disable_env_checker=True, **self.arguments)
+        except errors.DependencyNotInstalled as error:
+            # The advice of the error itself would bring plain pygame, which breaks pygame-ce.
+            hint = "Do not take Gymnasium's own extras; for Box2D, pip install box2d"
+            raise ValueError(f"{name}: {error}. {hint}") from error
+        except (errors.Error, ImportError) as error:
+            raise ValueError(f"{name}: {' '.join(str(error).split())}") from error
+        except (Exception, SystemExit) as error:
+            said = brief(" ".join(str(error).split()), 300)
+            raise ForeignEnvError(f"{name} cannot be made: {type(error).__name__}: {said}") from error
         return env
 
+    def _environment(self, count: int, seeds: Ints, frame_skip: int, limit: int) -> GymEnv:
+        return GymEnv(
+            self.config.env, self._make, count, seeds, threshold=self.threshold, frame_skip=frame_skip, limit=limit
+        )
+
     def make_env(self, rng: np.random.Generator) -> GymEnv:
-        make = partial(self._make, PATIENCE.get(self.config.env))
-        return GymEnv(make, self.config.num_envs, rng, self.threshold, self.config.frame_skip)
+        config = self.config
+        seeds, limit = rng.integers(2**31, size=config.num_envs), PATIENCE.get(config.env, self.limit)
+        return self._environment(config.num_envs, seeds, config.frame_skip, limit)
 
-    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[GymScore]:
-        """Play so many episodes side by side, without exploration.
+    def close_env(self, env: GymEnv) -> None:
+        env.close()
 
-        The pilot decides at every step of the environment: to hold an action for `frame_skip` of them makes learning
-        faster, and the best one may change sooner.
+    def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[GymScore]:
+        """Play so many episodes without exploration, each from a seed of its own, some side by side.
+
+        A decision is held for as many steps as in training, unless `frame_skip` says otherwise.
         """
-        env = GymEnv(self._make, episodes, np.random.default_rng(seed), self.threshold)
-        observation, actions = env.reset(), np.zeros(episodes, dtype=np.intp)
-        while (going_on := env.outcome == GOING_ON).any():
-            actions = np.where(going_on, pilot.act(observation, held=actions), actions)
-            observation = env.step(actions).observation
-            yield
-        success = None if self.threshold is None else float((env.outcome == SUCCESS).mean())
-        return GymScore(episodes, success, float(env.returns.mean()), float(env.lengths.mean()))
+        seeds, skip = np.random.default_rng(seed).integers(2**31, size=episodes), frame_skip or self.config.frame_skip
+        begun = min(episodes, AT_ONCE)
+        env, played = self._environment(begun, seeds[:begun], skip, self.limit), []
+        try:
+            observation, actions = env.reset(), np.zeros(begun, dtype=np.intp)
+            while (going_on := env.outcome == GOING_ON).any():
+                actions = np.where(going_on, pilot.act(observation, held=actions), actions)
+                result = env.step(actions)
+                for slot in np.flatnonzero(result.ended & going_on).tolist():
+                    succeeded, cut = env.outcome[slot] == SUCCESS, env.cut[slot]
+                    played.append((env.returns[slot], env.lengths[slot], succeeded, cut))
+                    if begun < episodes:
+                        env.begin(slot, int(seeds[begun]))
+                        actions[slot], begun = 0, begun + 1
+                observation = env.observe()
+                yield
+        finally:
+            env.close()
+        returns, lengths, succeeded, cut = np.array(played, dtype=float).T
+        success = None if self.threshold is None else float(succeeded.mean())
+        return GymScore(
+            episodes, success, float(returns.mean()), float(lengths.mean()), int(cut.sum()), self.limit, skip
+        )
+
+
+def env_arguments(config: Config) -> dict[str, Any]:
+    """Return the arguments that an environment is made with; raises ValueError where they make no sense."""
+    arguments = parse_json(config.env_arguments or "{}")
+    if not isinstance(arguments, dict):
+        raise ValueError(f"env_arguments are values by name, not {shown(arguments)}")
+    return arguments

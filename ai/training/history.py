@@ -247,9 +247,11 @@ class History:
 
     def _append_setting_change(self, entry: SettingChange) -> None:
         if entry.amends:
-            last = next(each for each in reversed(self.setting_changes) if each.name == entry.name)
-            self.setting_changes.remove(last)
-            entry = replace(entry, before=last.before, amends=False)
+            last = next((each for each in reversed(self.setting_changes) if each.name == entry.name), None)
+            if last is not None:  # else there is nothing to amend: it stands for itself
+                self.setting_changes.remove(last)
+                entry = replace(entry, before=last.before)
+            entry = replace(entry, amends=False)
         if entry.before != entry.after:  # otherwise the knob is back where it was
             self.setting_changes.append(entry)
 
@@ -288,7 +290,7 @@ class History:
             "validations": [asdict(validation) for validation in self.validations],
         }  # fmt: skip
         values = np.array([each.values for each in self.checkpoints] or np.empty((0, 0)), dtype=np.float32)
-        text = np.array(json.dumps(described))
+        text = np.array(json.dumps(described, allow_nan=False))
         np.savez(folder / HISTORY_FILE, allow_pickle=False, described=text, points=self.points, values=values)
 
     @classmethod

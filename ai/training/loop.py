@@ -102,7 +102,11 @@ class Training(Run):
         replay, optimizer = make_replay(config, task.num_features), make_optimizer(config)
         self.agent = self._new_agent(config, agent_rng, replay=replay, optimizer=optimizer)
         self.env: Env = task.make_env(env_rng)
-        self.observation = self.env.reset()
+        try:
+            self.observation = self.env.reset()
+        except BaseException:
+            self.task.close_env(self.env)
+            raise
         self.episodes = 0
         self.statistics = EpisodeStatistics(self.env.num_envs)
         self.best: Score | None = None
@@ -187,6 +191,7 @@ class Training(Run):
         return score if self.validation_pace else self.validate()
 
     def _begin_validation(self, agent: DeepQAgent) -> None:
+        self._end_validation()
         self._validated = agent
         self._flights = self.task.trial(agent, self.validation_episodes, VALIDATION_SEED)
 
@@ -199,22 +204,33 @@ class Training(Run):
             return None
         try:
             for _ in range(decisions) if decisions else repeat(None):
+                if self.stopping():
+                    self._end_validation()
+                    return None
                 next(self._flights)
         except StopIteration as done:
             score: Score = done.value
-            agent, self._flights, self._validated = self._validated, None, None
-            self.evaluated = agent.decisions
-            if score.better_than(self.best):
-                self.best, self.best_network = score, _network(agent)
-            return score
-        return None
-
-    def evaluate(self) -> Score:
-        """Try the validation episodes, and keep the network if it is the best so far."""
-        self._begin_validation(self.last_agent())
-        score = self.validate()
-        assert score is not None
+        except BaseException:
+            self._end_validation()
+            raise
+        else:
+            return None
+        agent = self._validated
+        self._end_validation()
+        self.evaluated = agent.decisions
+        if score.better_than(self.best):
+            self.best, self.best_network = score, _network(agent)
         return score
+
+    def _end_validation(self) -> None:
+        if self._flights is not None:
+            self._flights.close()
+        self._flights = self._validated = None
+
+    def evaluate(self) -> Score | None:
+        """Try the validation episodes, and keep the network if it is the best so far; None if that was stopped."""
+        self._begin_validation(self.last_agent())
+        return self.validate()
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
@@ -259,8 +275,22 @@ class Training(Run):
             write_agent(last, folder / LAST)
 
         if final:
-            described["evaluation"] = self.task.evaluate(best, self.task.test_episodes, TEST_SEED).to_json()
+            self._test(best, described)
         return described, write
+
+    def _test(self, best: DeepQAgent, described: dict[str, Any]) -> None:
+        """Measure the best network on test spawns, if that is not stopped."""
+        trial = self.task.trial(best, self.task.test_episodes, TEST_SEED)
+        try:
+            while not self.stopping():
+                next(trial)
+        except StopIteration as done:
+            described["evaluation"] = done.value.to_json()
+        trial.close()
+
+    def close(self) -> None:
+        self._end_validation()
+        self.task.close_env(self.env)
 
     @classmethod
     def begun(cls, folder: Path, *, env: str | None = None, **_: Any) -> Self:

@@ -166,7 +166,9 @@ def _copied(
             write_networks(temporary)
             if history is not None:
                 history.write(temporary)
-            (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+            (temporary / TRAINING_FILE).write_text(
+                json.dumps(described, indent=2, allow_nan=False) + "\n", encoding="utf-8"
+            )
         clear_states(folder, None if state is None else moment)
         return described
 

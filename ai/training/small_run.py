@@ -143,9 +143,9 @@ class SmallRun:
         self.env.heights = self.plan.later
         self.learners.observation, self._held = self.env.reset(), np.zeros_like(self._held)
         if self.plan.keep is not None and len(self.replay):
-            old, count = self.replay, min(self.plan.keep, len(self.replay))
-            self.replay = self.agent.replay = WatchedReplay(self.plan.keep, self.env.num_features)
-            self.replay.add(old.at(_newest(old, count)))
+            old = self.replay
+            self.replay = self.agent.replay = type(old)(self.plan.keep, self.env.num_features)
+            self.replay.load_state(old.state(self.plan.keep), self.env.num_actions)
             self.replay.added = old.added
 
     @np.errstate(over="ignore", invalid="ignore")
@@ -175,15 +175,10 @@ class SmallRun:
         learners, tests, replay = self.learners, self.tests, self.replay
         count, oldest = min(self.config.num_envs, len(replay)), replay.added - len(replay)
         drawn = oldest + (replay.drawn - replay.start) % replay.capacity
-        memory = Memory(replay.at(_newest(replay, count)), replay.added - count, oldest, drawn)
+        memory = Memory(replay.at(replay.newest(count)), replay.added - count, oldest, drawn)
         tested, passed = (tests.flown, tests.landed) if tests else (None, None)
         done, value = (self._decisions, learners.flights, learners.landed), float(values.mean())
         return SmallState(*done, value, epsilon, learners.flown, memory, tested, passed)
-
-
-def _newest(replay: ReplayBuffer, count: int) -> Ints:
-    """Return the rows of so many of the newest memories, oldest first."""
-    return (replay.start + len(replay) - count + np.arange(count)) % replay.capacity
 
 
 def small_runs(

@@ -83,9 +83,15 @@ class Task(ABC, Generic[S]):
     def update_env(self, decisions: int, env: Any) -> None:
         """Bring what changes with experience up to date in an environment that `make_env` made."""
 
+    def close_env(self, env: Any) -> None:
+        """Let go of what an environment that `make_env` made holds."""
+
     @abstractmethod
-    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[S]:
-        """Measure a pilot over so many episodes at once, which follow from `seed`, one decision at a time."""
+    def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[S]:
+        """Measure a pilot over so many episodes, which follow from `seed`, one decision at a time.
+
+        A decision is held for as many steps as in training, unless `frame_skip` says otherwise.
+        """
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> S:
         """Return the score of a whole `trial`."""
@@ -166,11 +172,16 @@ def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[
     return np.array([*counts, *sums], dtype=float)
 
 
-def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random") -> Evaluation:
+    """Return the score of such `flights`."""
+    return finished(flights(pilot, episodes, seed, spawn))
+
+
+def flights(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Trial[Evaluation]:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
     env = LanderEnv(episodes, seed, spawn, frame_skip)
     env.reset()
-    return Evaluation.of(finished(flown(pilot, env)))
+    return Evaluation.of((yield from flown(pilot, env)))
 
 
 class LanderTask(Task[Evaluation]):
@@ -199,13 +210,13 @@ class LanderTask(Task[Evaluation]):
         """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
         env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
 
-    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
+    def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[Evaluation]:
         """Fly so many flights at once from random spawns, one decision at a time.
 
         Where hard starts are taught, half as many from such ones fly beside them: much cheaper than after them.
         """
         beside = (episodes + 1) // 2 if self.config.spawn in TEACH_HARD else 0
-        env = LanderEnv(episodes + beside, seed, "random", self.config.frame_skip)
+        env = LanderEnv(episodes + beside, seed, "random", frame_skip or self.config.frame_skip)
         env.reset()
         if beside:
             rng, hard = np.random.default_rng(seed), np.arange(env.num_envs) >= episodes
@@ -229,8 +240,8 @@ class AnywhereTask(LanderTask):
         """Tighten the limits of a touchdown over the schedule, from those that are observed to a share of them."""
         env.strictness = touchdown_limits(self.config, decisions)
 
-    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
-        env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
+    def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[Evaluation]:
+        env = AnywhereEnv(episodes, seed, "random", frame_skip or self.config.frame_skip, sites=tuple(SITES))
         env.reset()
         return Evaluation.of((yield from flown(pilot, env)))
 

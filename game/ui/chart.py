@@ -43,7 +43,7 @@ _SLACK: Final = 0.02  # share of the x axis by which the cursor may lie beyond a
 class Chart:
     """Line chart in a box, in points.
 
-    `read` formats a value, `read_x` a position on the x axis. `limits` fixes the vertical axis; otherwise it
+    `read` formats a value; the x axis counts seconds. `limits` fixes the vertical axis; otherwise it
     follows the numbers, and a few that have exploded are cut off and marked by an arrow. On a `log` axis, values that
     are not positive make a gap. `empty` is the text while there is nothing to show.
     """
@@ -55,13 +55,11 @@ class Chart:
         *,
         limits: Limits | None = None,
         read: Callable[[float], str] = plotting.compact,
-        read_x: Callable[[float], str] | None = None,
         log: bool = False,
         empty: str = "",
     ) -> None:
         self.box = pygame.FRect(box)
         self.label, self._empty = label, empty or texts.CHART_EMPTY
-        self.read_x = read_x or texts.CHART_SECONDS.format
         self._value: Callable[[float], float] = (lambda height: 10.0**height) if log else float
         self._make_grid = plotting.decades if log else plotting.grid
         self._log, self._read = log, read
@@ -77,7 +75,7 @@ class Chart:
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
         self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
-        self.painted_latest: tuple[str, ...] = ()  # of each run, as the sheet was painted
+        self.painted_latest: tuple[float | None, ...] = ()  # number of each run, as the sheet was painted
         self._painted: Painted | None = None  # until the numbers or the window change
         self._others: tuple[object, Canvas] | None = None  # the runs behind the current one, and what they look like
         self._stale = True
@@ -103,10 +101,6 @@ class Chart:
         """Box of the numbers of the scale, in points."""
         plot = self.plot
         return pygame.FRect(plot.right + _MARGIN, plot.top - 8, _GUTTER - _MARGIN, plot.height + 8 + _FOOT)
-
-    def _latest(self, run: Series) -> str:
-        value = run.last()
-        return "–" if value is None else self.read(value)
 
     @property
     def limits(self) -> Limits:
@@ -208,7 +202,7 @@ class Chart:
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
-        self.painted_caption, self.painted_latest = self.caption, tuple(map(self._latest, self.runs))
+        self.painted_caption, self.painted_latest = self.caption, tuple(run.last() for run in self.runs)
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)
@@ -268,7 +262,9 @@ class Chart:
         ends: tuple[tuple[float, Align], ...] = ((plot.x, "left"), (plot.right, "right"))
         for (x, align), x_end in zip(ends, self._x_ends, strict=False):
             place = (x, plot.bottom + 15)
-            sheet.text(self.read_x(x_end), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
+            sheet.text(
+                texts.CHART_SECONDS.format(x_end), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align
+            )
 
     def _value_at(self, x: float) -> float | None:
         """Return the value of the current run's curve at x."""
@@ -308,7 +304,9 @@ class Chart:
             tick = self._tick_at(across)
             # Below the label and the figure.
             below = (self.box.x, plot.top - 6, self.box.width, self.box.bottom - plot.top + 6)
-            draw_tooltip(canvas, (across, plot.top), below, [self.read_x(x), *([tick.text] if tick else [])], rows)
+            draw_tooltip(
+                canvas, (across, plot.top), below, [texts.CHART_SECONDS.format(x), *([tick.text] if tick else [])], rows
+            )
 
     def _tick_at(self, across: float) -> Tick | None:
         """Return the tick nearest to x on the canvas, if one is near; a turned knob goes before a checkpoint."""

@@ -43,8 +43,7 @@ class LearnScene(PanelScene):
         self._list: ListRow | None = None
         self._choose_last()
         self.build()
-        assert self._list
-        self.form.focus(self._list)
+        self.form.focus(self.form.widgets[1])  # the list
 
     def _choose_last(self) -> None:
         """Choose the chapter that was left, or the first that is not done where that one is."""

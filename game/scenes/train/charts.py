@@ -247,9 +247,9 @@ class TrainingCharts(Charts):
         return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
     @property
-    def landed(self) -> tuple[str, ...]:
-        """Share that lands of each run, in percent, as the first chart was last painted; a dash before any is known."""
-        return self._all[0].painted_latest
+    def landed(self) -> tuple[int | None, ...]:
+        """Percent of each run that land, as the first chart was last painted; None before a flight has ended."""
+        return tuple(None if share is None else round(share) for share in self._all[0].painted_latest)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and what is said of them as it was when they were painted."""

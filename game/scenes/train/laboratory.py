@@ -60,7 +60,7 @@ class Laboratory:
         knobs: the settings that an experiment changes.
         start: starts the experiment.
         leave: ends the split view, and keeps the experiment if that is true.
-        landed: returns what both land now, in percent, as it stands on the screen.
+        landed: returns what both land now, in whole percent, as it stands on the screen.
 
     """
 
@@ -70,7 +70,7 @@ class Laboratory:
         knobs: KnobsPanel,
         start: Callable[[str], None],
         leave: Callable[[bool], None],
-        landed: Callable[[], Sequence[str]],
+        landed: Callable[[], Sequence[int | None]],
     ) -> None:
         self._run, self._knobs, self._start, self._leave, self._landed = run, knobs, start, leave, landed
         self.page: Literal["", "picks", "guess", "result"] = ""
@@ -186,7 +186,7 @@ class Laboratory:
     def _figures(self) -> str:
         """What both landed at the verdict, and what they land now."""
         landed = self._landed()
-        if len(landed) < 2 or not all(map(str.isdigit, landed)):
+        if len(landed) < 2 or None in landed:
             return self.said["figures"]
         return f"{self.said['figures']} {texts.LAB_FIGURES.format(other=landed[1], healthy=landed[0])}".lstrip()
 
@@ -198,11 +198,11 @@ def came_words(came: Verdict | None, guess: Verdict | None) -> str:
     return f"{texts.LAB_CAME_OF[came]} {texts.LAB_AS_GUESSED if came == guess else texts.LAB_NOT_AS_GUESSED}"
 
 
-def has_recovered(landed: Sequence[str], *, was: bool = False) -> bool:
+def has_recovered(landed: Sequence[int | None], *, was: bool = False) -> bool:
     """Whether an experiment lands as often as its twin by now, given both shares in percent; one that did may waver."""
-    if len(landed) < 2 or not all(map(str.isdigit, landed)):
+    healthy, other = landed if len(landed) == 2 else (None, None)
+    if healthy is None or other is None:
         return was
-    healthy, other = map(int, landed[:2])
     return 0 < healthy <= other + (_WAVERS if was else 0)
 
 

@@ -98,7 +98,7 @@ class Landers:
             swarm.update(still)
         self._frame += 1
 
-    def draw(self, canvas: Canvas, alpha: float, landed: Sequence[str]) -> None:
+    def draw(self, canvas: Canvas, alpha: float, landed: Sequence[int | None]) -> None:
         """Draw them; `landed` are the shares that land as the chart of both was painted."""
         paused = self._run.state is WorkerState.PAUSED or self._moment is not None
         if self._run.twin:
@@ -109,7 +109,7 @@ class Landers:
             place = self.box.centerx, self.box.bottom - 14  # below the title, in a small window, too
             canvas.text(texts.REWIND_NO_LANDERS, place, size=SMALL, colour=MUTE, align="centre")
 
-    def _draw_pair(self, canvas: Canvas, alpha: float, paused: bool, landed: Sequence[str]) -> None:
+    def _draw_pair(self, canvas: Canvas, alpha: float, paused: bool, landed: Sequence[int | None]) -> None:
         box = self._halves
         canvas.fill(canvas.rect(*box), NIGHT0)
         fresh = not self._pictures or self._pictures[0].scale != canvas.scale
@@ -120,18 +120,18 @@ class Landers:
                 swarm.draw(picture, alpha, paused=paused)
             left = box.left + number * swarm.box.width
             canvas.surface.blit(picture.surface, canvas.rect(left, box.top, *swarm.box.size))
-            share = landed[number] if number < len(landed) else ""
+            share = landed[number] if number < len(landed) else None
             if self._moment is not None:
                 row = run.history.row_at(self._moment)
-                share = f"{100 * Flown(run.history, run.config).landed(row):.0f}"
+                share = round(100 * Flown(run.history, run.config).landed(row))
             self._write(canvas, left, number, run, share)
         canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
 
-    def _write(self, canvas: Canvas, left: float, number: int, run: TrainingRun, share: str) -> None:
+    def _write(self, canvas: Canvas, left: float, number: int, run: TrainingRun, share: int | None) -> None:
         """Write a run's name and the share that lands below its swarm."""
         width, top = self._halves.width / 2 - 2 * _MARGIN, self._halves.bottom - _SAID + 6
         colour = (NET, RUN_STYLES[_STYLE][0])[number]
         cursor = Cursor(left + _MARGIN, top, width, canvas.scale, canvas, size=TEXT, colour=colour)
-        cursor.pair(self._names[number], texts.SPLIT_LANDED.format(percent=share) if share else "")
+        cursor.pair(self._names[number], "" if share is None else texts.SPLIT_LANDED.format(percent=share))
         if run.state in (WorkerState.FAILED, WorkerState.ENDED):
             cursor.in_style(SMALL, canvas.palette.warn).text(texts.SPLIT_ENDED)

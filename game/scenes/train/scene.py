@@ -87,11 +87,10 @@ class TrainScene(TrainingScene):
         landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
         count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
         line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
-        share = run.history["success"][row]
-        figure = "" if np.isnan(share) else f"{100 * share:.0f}"
-        painted = "".join(self.charts.landed[:1])
-        if self.rewind.moment is None and painted.isdigit():  # one number for the title and its chart
-            figure = painted
+        share = 100 * run.history["success"][row]
+        if self.rewind.moment is None and self.charts.landed and self.charts.landed[0] is not None:
+            share = self.charts.landed[0]  # one number for the title and its chart
+        figure = "" if np.isnan(share) else f"{share:.0f}"
         return TrainingStatus(title, line, figure, landed)
 
     @property
@@ -154,7 +153,8 @@ class TrainScene(TrainingScene):
 
     def _describe_foot(self, column: Column) -> None:
         super()._describe_foot(column)
-        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
+        if self.run.alive:
+            column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one."""

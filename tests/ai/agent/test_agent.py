@@ -148,7 +148,7 @@ def test_half_of_each_batch_is_learnt_in_the_mirror(changes):
     agent.replay.sample = lambda *how: drawn.append(sample(*how)) or drawn[0]
     agent.gradient_step = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
     agent.learn()
-    scale = agent.normalizer or (lambda states: states)
+    scale = agent.normalizer.scaled if agent.normalizer else (lambda states: states)
     assert len(learnt) == 2
     for number, (states, actions, *_) in enumerate(learnt):
         cells = drawn[0][0]

@@ -47,6 +47,8 @@ def test_what_makes_no_sense_is_one_sentence_and_nothing_is_written(tmp_path, ca
         (["--knobs", "no_such_knob"], "no_such_knob"),
         (["--knobs", "learning", "--space", "x.json"], "--space"),
         (["--space", "no such file.json"], "no such file"),
+        (["--space", __file__], "test_sweep_cli.py"),
+        (["--digits", "--set", "held_out=0", "--set", "batch_size=500"], "held_out"),
         (["--trials", "0"], "--trials"),
         (["--seeds", "-1"], "--seeds"),
         (["--knobs", ""], "--knobs"),

@@ -95,7 +95,9 @@ def test_the_target_is_the_agents(case):
     agent, before, cell, lesson, _ = case
     cells, row = minibatch(before, cell)
     if agent.normalizer:
-        cells = cells._replace(state=agent.normalizer(cells.state), next_state=agent.normalizer(cells.next_state))
+        cells = cells._replace(
+            state=agent.normalizer.scaled(cells.state), next_state=agent.normalizer.scaled(cells.next_state)
+        )
     targets, values = agent.targets(cells)
     assert lesson.target == targets[row]
     assert lesson.next_value == values[row]

@@ -39,6 +39,7 @@ WRONG = {
     "def act(o): return [1, [2]]": "0 act must return a whole number from 0 to 5, and returned [1, [2]]",
     "async def act(o): return 0": "0 act is async: it must be a plain function, def act",
     "async def act_many(o): yield 0": "0 act_many is async: it must be a plain function, def act_many",
+    "class P:\n    async def __call__(self, o): return 0\nact = P()": "0 act is async: it must be a plain function",
     "def act(o): yield 0": "0 act must return a whole number from 0 to 5, and returned <generator",
     "import numpy as np\ndef act(o): return np.ma.masked": "0 act must return a whole number from 0 to 5, and returned",
     MASKED: "0 act_many must return 3 whole numbers from 0 to 5, and returned masked_array(",
@@ -79,6 +80,11 @@ def test_act_and_act_many_answer_row_by_row_and_may_change_what_they_get():
     one = load(ACT, PATH, "def act(o):\n    o += 1\n    return int(o[0]) % 6")[0](rows.copy())
     many = load(ACT, PATH, "def act_many(o):\n    o += 1\n    return o[:, 0].astype(int) % 6")[0](rows.copy())
     assert one.tolist() == many.tolist() == [1, 4, 1]
+
+
+def test_a_file_may_begin_as_some_editors_begin_it_and_have_a_callable_object():
+    source = "\ufeffclass Pilot:\n    def __call__(self, o): return 5\nact = Pilot()"
+    assert load(ACT, PATH, source)[0](OBSERVATIONS).tolist() == [5, 5, 5]
 
 
 def test_the_pay_of_the_examples_is_the_usual_pay():

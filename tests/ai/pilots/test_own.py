@@ -159,7 +159,7 @@ def test_a_file_that_is_gone_or_is_none_is_reported(pilot: OwnPilot):
     pilot.path.unlink()
     pilot.path.mkdir()
     assert flown(pilot) == 1
-    assert "directory" in pilot.problem
+    assert "ordinary file" in pilot.problem
 
 
 def test_until_the_first_answer_it_coasts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -76,6 +76,8 @@ def test_a_file_narrows_ranges_and_lists_choices(tmp_path):
         {"optimizer": ["no such"]},
         {"hidden": [16]},
         {"n_step": [1.5]},
+        {"n_step": {"low": 1.5, "high": 3}},
+        {"n_step": []},
         {"n_step": 3},
         {"unknown": {}},
         [],

@@ -99,7 +99,7 @@ class TestLearningOthersEnvironments:
         assert task.evaluate(Rocking(), 8, 0).mean_length > 8
 
     def test_what_cannot_be_learnt_is_said_in_a_line(self, tmp_path, capsys):
-        refused = {"Nowhere-v0": "Nowhere", "Pendulum-v1": "Discrete actions", "Blackjack-v1": "Box of observations"}
+        refused = {"Nowhere-v0": "Nowhere", "Pendulum-v1": "Discrete actions", "Blackjack-v1": "a Box or Discrete"}
         for env, message in refused.items():
             assert main(["train", "--env", env, "--output", str(tmp_path / "run"), "--seconds", "1"]) == 1
             stderr = capsys.readouterr().err

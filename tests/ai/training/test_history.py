@@ -33,7 +33,7 @@ def full_history():
     for number in range(10):
         history.append(point(number))
     history.append(checkpoint(0))
-    history.append(checkpoint(300, {"count": 1, "mean": [0.5], "squares": [0.0]}))
+    history.append(checkpoint(300, {"count": 1, "origin": [0.0], "mean": [0.5], "squares": [0.0]}))
     history.append(SettingChange(200, "learning_rate", 0.002, 0.001))
     history.append(SettingChange(200, "mirror", True, False))
     history.append(Validation(100, 0.75, -3.5, True))
@@ -168,3 +168,13 @@ def test_a_history_knows_in_which_unit_its_values_are(tmp_path):
     history.reward_scale = 0.1
     history.write(tmp_path)
     assert History.read(tmp_path).reward_scale == 0.1
+
+
+def test_an_amendment_of_a_change_that_is_not_there_stands_for_itself():
+    history = History()
+    history.append(SettingChange(10, "tau", 0.1, 0.2, amends=True))
+    assert history.setting_changes == [SettingChange(10, "tau", 0.1, 0.2)]
+    history.append(SettingChange(11, "tau", 0.2, 0.3, amends=True))
+    assert history.setting_changes == [SettingChange(11, "tau", 0.1, 0.3)]
+    history.append(SettingChange(12, "tau", 0.3, 0.1, amends=True))
+    assert history.setting_changes == []

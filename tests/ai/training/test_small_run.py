@@ -62,3 +62,14 @@ def test_those_that_are_tested_take_no_random_actions():
     for _ in range(10):  # before it learns
         best = run.agent.act(run.tests.observation)
         assert np.array_equal(run.advance().tested.main, best == 1)
+
+
+def test_a_memory_that_is_cut_down_stays_of_its_kind_and_keeps_the_newest():
+    for prioritised in (False, True):
+        run = SmallRun(SMALL_RUN.changed(prioritised=prioritised), 0, Plan(change=30, keep=50))
+        for _ in range(30):
+            run.advance()
+        kind, before = type(run.replay), run.replay.state(50)
+        run._change()
+        assert type(run.replay) is kind
+        assert all(np.array_equal(part, before[name]) for name, part in run.replay.state(50).items())

@@ -57,7 +57,7 @@ def test_progress_is_put_away_after_a_question_and_it_is_said_where(open_game: O
     assert Records(context.user_dir).entries() == []
     saved = player.saved()
     assert (saved["learnt"], saved["chapter"], saved["rung"], saved["wider_pads"]) == ({}, "", -1, True)
-    assert free.chosen()[2] == LADDER.spawn(0)
+    assert free.chosen()[1] == LADDER.spawn(0)
     fly(context, 1)
     assert len(Records(context.user_dir).entries()) == 1
     second = put_away(context.user_dir, context.settings)
