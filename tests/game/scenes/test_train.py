@@ -53,18 +53,17 @@ def test_start_pause_and_go_on(beside: Driver) -> None:
     beside.wait(lambda: scene.run.swarm_state.decisions > stood + 8)
 
 
-def test_a_run_goes_slow_or_fast_in_sight_while_it_goes_on(beside: Driver) -> None:
-    assert not any(isinstance(each, ChoiceRow) for each in beside.form.widgets)
-    learn(beside)
-    beside.frames(2)
-    pace = beside.choice(texts.TRAIN_PACES[0])
+def test_a_run_goes_slow_or_fast_in_sight_while_it_goes_on(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not any(isinstance(each, ChoiceRow) for each in train.form.widgets)
+    learn(train)
+    train.frames(2)
+    pace = train.choice(texts.TRAIN_PACES[0])
     assert pace.index == 1
+    asked: list[float | None] = []
+    monkeypatch.setattr(train.top.run._worker, "set_pace", asked.append)
     pace.choose(0)
-    run = beside.top.run
-    beside.wait(lambda: run.swarm_state.decisions > 0)
-    before, began = run.turns, time.monotonic()
-    beside.wait(lambda: run.turns >= before + 8)
-    assert time.monotonic() - began > 0.3, "as in real flight, fifteen decisions a second"
+    pace.choose(1)
+    assert asked == [15.0, None], "as in real flight, and as fast as possible"
 
 
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
