@@ -79,7 +79,9 @@ def happened_frame(lesson: Lesson) -> Frame:
     cache = PaintCache()
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:
-        cache.draw(canvas, box, (), partial(_paint, box.width, before, int(lesson.cell.action)))
+        wide = min(box.width, box.height * VIEW_SIZE[0] / VIEW_SIZE[1])
+        high = wide * VIEW_SIZE[1] / VIEW_SIZE[0]
+        cache.draw(canvas, (*box.topleft, wide, high), (), partial(_paint, wide, before, int(lesson.cell.action)))
 
     def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
