@@ -130,8 +130,8 @@ class LanderEnv:
 
     @property
     def gravity(self) -> float:
-        """Gravity in m/s²; can be changed at any time, for all landers."""
-        return -float(self.world.gravity[1])
+        """Gravity in m/s², of the first lander where they differ; can be changed at any time, for all landers."""
+        return -float(self.world.gravity[..., 1].flat[0])
 
     @gravity.setter
     def gravity(self, gravity: float) -> None:
