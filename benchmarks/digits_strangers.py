@@ -54,15 +54,14 @@ def read_zeros(networks, each, rng):
             *(f"{name} {np.mean(each == 0):.1%}" for name, each in zip(networks, read, strict=True)),
         )
     for digit in (0, 8):
-        drawn = [stroke_stages(redrawn(narrow(digit, rng)), np.zeros((1, 1))) for _ in range(5 * each)]
+        seen = [stroke_stages(redrawn(narrow(digit, rng)), np.zeros((1, 1))) for _ in range(5 * each)]
         readings = [
-            Reading(seen, {name: network.predict(seen.centred)[0] for name, network in networks.items()})
-            for seen in drawn
+            Reading(one, {name: network.predict(one.centred)[0] for name, network in networks.items()}) for one in seen
         ]
         answers = {name: np.array([read.probabilities[name].argmax() for read in readings]) for name in networks}
         sure = np.array([read.verdict("modern") is Verdict.SURE for read in readings]) & (answers["modern"] != digit)
         shares = [f"{name} {np.mean(read == digit):.1%}" for name, read in answers.items()]
-        print(f"{digit} narrow", *shares, f"sure of another digit: {sure.sum()} of {len(drawn)}")
+        print(f"{digit} narrow", *shares, f"sure of another digit: {sure.sum()} of {len(seen)}")
 
 
 def read_scans(network, each):

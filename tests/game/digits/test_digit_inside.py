@@ -79,7 +79,9 @@ def test_each_map_that_is_followed_is_the_one_in_which_the_last_number_stands(in
     walk = scene(inside).walk
     for number in range(1, len(walk.stages)):
         inside.key(pygame.K_n)
-        row, column, channel = walk.places[number - 1]
+        place = walk.places[number - 1]
+        assert place is not None
+        row, column, channel = place
         assert walk.channel == channel
         assert walk.stage.inputs[row, column, channel] == walk.value(number - 1)
 
