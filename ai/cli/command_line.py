@@ -27,6 +27,7 @@ LONGEST: Final = 400  # letters of a printed line: text from a file or an argume
 SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
 EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
+_ASKED: Final = 5  # times that a program is asked to end before it does so in the midst of what it does
 _REQUESTS: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # signals that ask a program to end
 
 # Errors of reading a path or settings that the user has named. A loop of links and JSON that is nested too deeply
@@ -188,13 +189,16 @@ def stoppable(*names: str) -> Iterator[list[int]]:
     """Collect Ctrl-C and termination signals in the list, so that they never cut short a step or its save.
 
     An entry is the number of a signal; `names` are of other signals to collect in place of these. A hang-up that is
-    ignored (nohup) is none. Meant for the main thread; afterwards, signals do what they did before.
+    ignored (nohup) is none. Meant for the main thread; afterwards, signals do what they did before. Whoever asks again
+    and again is heard at once, by a KeyboardInterrupt: somebody else's code may never come back.
     """
     stop: list[int] = []
     terminals, hang_up = [number for number in (1, 2) if os.isatty(number)], getattr(signal, "SIGHUP", None)
 
     def note(number: int, _: FrameType | None) -> None:
         stop.append(number)
+        if len(stop) >= _ASKED:
+            raise KeyboardInterrupt
         if number == hang_up:  # writing to terminals that are closed would fail
             void = os.open(os.devnull, os.O_WRONLY)
             for terminal in terminals:

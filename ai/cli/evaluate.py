@@ -90,6 +90,9 @@ def _finished(trial: Trial[Score]) -> Score:
         except StopIteration as done:
             score: Score = done.value
             return score
+        except ValueError:
+            if not stop:  # else it only ends what is to end
+                raise
         finally:
             trial.close()
     raise SystemExit(128 + stop[0])

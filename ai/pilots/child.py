@@ -59,10 +59,10 @@ def serve(link: Connection, path: str, source: str, kind: str) -> None:
 
 def _stand_alone(path: str) -> None:
     """Leave the terminal's Ctrl-C to whoever started this; what the file prints goes to standard error."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # drops one that came meanwhile, too
     if hasattr(os, "setsid"):
         os.setsid()
-    else:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     try:
         os.dup2(2, 1)
     except OSError:  # an app without a terminal

@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import signal
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -52,7 +53,8 @@ class PilotProcess:
         # No daemon, as such a process may have no children of its own: closed when this is collected, or at the end.
         self._process = context.Process(target=serve, args=(theirs, str(path), source, kind))
         try:
-            self._process.start()
+            with _uninterrupted():
+                self._process.start()
         except OSError as error:
             self._link.close()
             raise PilotError(f"its process could not be started: {error.strerror or error}") from error
@@ -136,6 +138,22 @@ class PilotProcess:
     def _ended(self) -> PilotError:
         self.close()
         return PilotError("its process has ended")
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Hold back Ctrl-C: a process that begins in a block is not hit by it before it has said that it ignores it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    resource_tracker.ensure_running()  # which begins with the first process, and would let Ctrl-C through again
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _end(process: BaseProcess, link: Connection) -> None:

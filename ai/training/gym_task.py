@@ -89,6 +89,9 @@ class GymTask(Task[GymScore]):
 
     def _make(self) -> gymnasium.Env[Any, Any]:
         name, errors = self.config.env, self._gymnasium.error
+        module, colon, _ = name.partition(":")
+        if colon and not all(part.isidentifier() for part in module.split(".")):
+            raise ValueError(f"{name}: {module} is no name of a module, as in --env module:Name-v0")
         try:
             env: gymnasium.Env[Any, Any] = self._gymnasium.make(name, disable_env_checker=True, **self.arguments)
         except errors.DependencyNotInstalled as error:

@@ -1,8 +1,8 @@
 """Damages files of every kind, and kills their writers at every step they take on the disk.
 
 A whole file is damaged in one way after another: cut, flipped, filled, mutated as JSON, swapped for a pipe, a device,
-a link, a folder or a file that is all holes, arrays that claim to be huge or are packed to be. Its reader has to
-return something, or to refuse it as it says it does, within two seconds.
+a link, a folder or a file that is all holes. Its reader has to return something, or to refuse it as it says it does,
+within two seconds.
 
 A writer is killed at every single step it takes on the disk (files opened, folders made, names changed), and what is
 found afterwards has to be the old version or the new one, whole.

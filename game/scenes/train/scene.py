@@ -153,7 +153,8 @@ class TrainScene(TrainingScene):
 
     def _describe_foot(self, column: Column) -> None:
         super()._describe_foot(column)
-        column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
+        if self.run.alive:
+            column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one."""

@@ -1,6 +1,7 @@
 """Real processes: a file that prints, reads, dies, never answers or has children harms nobody else."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -184,3 +185,26 @@ print(process._process.pid, flush=True)
                 parent.kill()
             parent.wait(LONG)
         wait_for_the_end_of(number)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="no such groups")
+def test_a_terminals_ctrl_c_reaches_whoever_asks_and_never_the_file(tmp_path: Path):
+    code = f"""
+import sys, time
+from pathlib import Path
+from ai.pilots.process import PilotProcess
+process = PilotProcess(Path({str(tmp_path / "pilot.py")!r}), "def act(o): return 0")
+try:
+    print(process._process.pid, flush=True)
+    time.sleep(60)
+except KeyboardInterrupt:
+    print(process.ready(60))
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as parent:
+        assert parent.stdout
+        parent.stdout.readline()
+        os.killpg(parent.pid, signal.SIGINT)  # while it begins
+        assert parent.communicate(timeout=LONG) == ("True\n", "")

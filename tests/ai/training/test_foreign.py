@@ -14,6 +14,7 @@ import pytest
 
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import LAST
+from ai.cli.command_line import stoppable
 from ai.environment import ForeignEnvError
 from ai.nn import CostFunctions, NeuralNetwork
 from ai.training.config import gym_config, load_agent
@@ -243,6 +244,8 @@ def test_where_an_environments_error_comes_from_is_in_a_log(tmp_path, capsys, mo
 
 
 def test_names_that_are_no_environments_are_refused_in_a_sentence(tmp_path, capsys, subtests):
+    with pytest.raises(ValueError, match=r"\.\./\.\./x is no name of a module"):
+        Training(gym_config("../../x:Y"))
     for env in ("../../x:Y", "nowhere_at_all:Y-v0", "..:Y", ":", "a:b:c", "os:Y-v0", "Nowhere-v0", "x y", "-v0", "/:/"):
         with subtests.test(env):
             assert main(["train", f"--env={env}", "--seconds", "1", "--output", str(tmp_path / "run")]) == 1
@@ -287,6 +290,15 @@ def test_numbers_that_are_not_finite_are_refused_by_a_networks_training():
     ):
         with pytest.raises(ValueError, match=said):
             network.train(x, y)
+
+
+def test_whoever_asks_five_times_ends_even_what_never_comes_back():
+    with stoppable() as stop:
+        for _ in range(4):
+            signal.raise_signal(signal.SIGTERM)
+        assert stop == [signal.SIGTERM] * 4
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
 
 
 @pytest.mark.slow

@@ -22,6 +22,7 @@ from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
+from game.ui.rows import ChoiceRow
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
@@ -34,7 +35,7 @@ def save_as(driver: Driver, name: str) -> None:
     driver.key(pygame.K_RETURN)
 
 
-def test_start_pause_step_and_go_on(beside: Driver) -> None:
+def test_start_pause_and_go_on(beside: Driver) -> None:
     learn(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
@@ -50,6 +51,19 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     assert scene.run.swarm_state.decisions == stood
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.swarm_state.decisions > stood + 8)
+
+
+def test_a_run_goes_slow_or_fast_in_sight_while_it_goes_on(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not any(isinstance(each, ChoiceRow) for each in train.form.widgets)
+    learn(train)
+    train.frames(2)
+    pace = train.choice(texts.TRAIN_PACES[0])
+    assert pace.index == 1
+    asked: list[float | None] = []
+    monkeypatch.setattr(train.top.run._worker, "set_pace", asked.append)
+    pace.choose(0)
+    pace.choose(1)
+    assert asked == [15.0, None], "as in real flight, and as fast as possible"
 
 
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
