@@ -24,8 +24,7 @@ STYLES: Final[dict[int, tuple[Style, ...]]] = {
         (((40, 6), (16, 30), (12, 72), (42, 98), (78, 82), (90, 46), (76, 12), (44, 2), (24, 14)),),
         (((36, 2), (70, 6), (93, 40), (84, 82), (50, 99), (16, 82), (6, 44), (22, 10), (46, 2)),),
         (((78, 14), (48, 0), (14, 22), (6, 62), (36, 98), (76, 86), (96, 46), (82, 10), (60, 10), (50, 22)),),
-        (((56, 2), (22, 10), (4, 50), (24, 92), (58, 98), (90, 72), (94, 30), (58, 2)), ((84, 10), (20, 92))),
-        (((56, 2), (22, 10), (4, 50), (24, 92), (58, 98), (90, 72), (94, 30), (58, 2)), ((96, -6), (2, 106))),
+        (((56, 2), (22, 10), (4, 50), (24, 92), (58, 98), (90, 72), (94, 30), (58, 2)),),
     ),
     1: (
         (((48, 0), (52, 100)),),
@@ -109,13 +108,22 @@ STYLES: Final[dict[int, tuple[Style, ...]]] = {
         (((56, 0), (14, 20), (40, 48), (80, 30), (58, 2), (80, 8), (76, 100)),),
     ),
 }  # fmt: skip
+CROSSED: Final = 0.4  # of zeros: these have a stroke through the ring
+SLASHES: Final = (55, 125, 90, 0)  # degrees: rising, falling, upright, level
+# Shares of digits that are narrow, and how wide these are at the least, in heights: a 0 and an 8 may be taken for a 1.
+NARROW: Final = {0: (0.3, 0.12), 8: (0.3, 0.12)}
+NARROW_OTHERS: Final = (0.1, 0.22)
 
 
 def written(digit: int, rng: np.random.Generator) -> list[Points]:
     """Return a digit as strokes of points (n, 2), in whole pixels, y down, as a random hand writes it."""
     style = STYLES[digit][rng.integers(len(STYLES[digit]))]
+    if digit == 0 and rng.random() < CROSSED:
+        style = crossed(style, rng)
     height = np.exp(rng.uniform(np.log(50), np.log(450)))  # pixels
-    extent = height * np.array([np.exp(rng.uniform(np.log(0.4), 0)), 1.0])
+    narrow, thin = NARROW.get(digit, NARROW_OTHERS)
+    least, most = (thin, 0.4) if rng.random() < narrow else (0.4, 1.0)
+    extent = height * np.array([np.exp(rng.uniform(np.log(least), np.log(most))), 1.0])
     slant, turn = np.clip(rng.normal(0.1, 0.18), -0.3, 0.6), rng.normal(0, 0.08)
     cosine, sine = np.cos(turn), np.sin(turn)
     manner = np.array([[1.0, 0.0], [-slant, 1.0]]) * extent @ np.array([[cosine, sine], [-sine, cosine]])
@@ -133,6 +141,29 @@ def written(digit: int, rng: np.random.Generator) -> list[Points]:
             way = way + np.sin((2 + waves) * np.pi * way[:, ::-1] + phases[waves]) * heights[waves]
         strokes.append(np.rint(way @ manner))
     return strokes
+
+
+def crossed(ring: Style, rng: np.random.Generator) -> Style:
+    """Return a zero's ring with a stroke through it, seldom two, in any direction.
+
+    Each end lies inside the ring, on it or outside. One hand in four goes on to it without lifting the pen.
+    """
+    angles = [rng.choice(SLASHES, p=(0.5, 0.2, 0.15, 0.15))]
+    if rng.random() < 0.12:  # a cross, or two strokes side by side
+        angles.append(angles[0] + rng.choice((0, 70, 90)))
+    slashes = []
+    for number, angle in enumerate(angles):
+        turned = np.radians(angle + rng.normal(0, 10))
+        way = 45 * np.array([np.cos(turned), -np.sin(turned)])
+        aside = np.array([way[1], -way[0]]) * (number and 0.4)
+        middle = 50 + aside + rng.normal(0, 5, 2)
+        ends = [middle + way * rng.uniform(0.45, 1.7), middle - way * rng.uniform(0.45, 1.7)]
+        slashes.append(tuple((float(x), float(y)) for x, y in ends[:: rng.choice((1, -1))]))
+    if rng.random() < 0.25:
+        first, *others = slashes
+        last = ring[-1][-1]
+        return (*ring[:-1], (*ring[-1], last, first[0], first[0], first[1]), *others)
+    return (*ring, *slashes)
 
 
 def drawings(digits: np.ndarray, rng: np.random.Generator) -> Image:

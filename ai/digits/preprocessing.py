@@ -24,6 +24,7 @@ CELLS: Final = 5  # along a pixel: the grid on which strokes are measured and ch
 MARGIN: Final = 2  # pixels of it around the box, room for strokes that grow
 SPACING: Final = 1.5  # cells from one point of a stroke to the next: more of them change nothing that can be seen
 MOST_POINTS: Final = 250  # of all strokes together: digits have fewer, and a scribble must not take long
+MEASURABLE: Final = 18  # pixels: ink with no longer side has strokes too few pixels wide to be measured
 LARGEST_GROWTH: Final = 2.0  # how far ink is enlarged once its strokes are thinner: a dot stays a dot
 
 Image = npt.NDArray[np.float32]
@@ -84,7 +85,9 @@ def redrawn(strokes: Sequence[Stroke]) -> Image:
 
 
 def stages(canvas: npt.ArrayLike, *, width: bool = True) -> Stages:
-    """Return a canvas at each stage; without `width`, strokes stay as wide as they are.
+    """Return a canvas at each stage.
+
+    Strokes stay as wide as they are without `width`, and in a scan of too few pixels to measure them.
 
     What is not a number is no ink; where ink exceeds 1, the brightest counts as 1.
     """
@@ -102,7 +105,7 @@ def stages(canvas: npt.ArrayLike, *, width: bool = True) -> Stages:
     middle = (len(ink) / 2, len(ink) / 2)
     fitted = _resample(ink, middle, CELLS, BOX)
     cells = float(CELLS)  # along a pixel of the result
-    if width:
+    if width and max(cropped.shape) >= MEASURABLE:
         ink, growth = _with_stroke_width(_covered(ink, drawn.max()))
         cells /= growth
         middle = _middle_of(_box(ink))

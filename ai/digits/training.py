@@ -151,16 +151,12 @@ class DigitTraining(Run):
         return DigitProgress(epochs, self.step, self.steps, loss, accuracy, rate, pace, held_out, self.best)
 
     def _changed(self, images: Images, labels: Labels, rng: np.random.Generator) -> Images:
-        config = self.config
+        config, images = self.config, images.copy()
+        drawn = rng.random(len(images)) < config.drawn
         if config.augmentation:
-            changed = augment(images, rng, Strength().times(config.augmentation))
-            same = rng.random(len(images)) < config.unaugmented
-            changed[same] = images[same]
-            images = changed
-        if config.drawn:
-            drawn = rng.random(len(images)) < config.drawn
-            images = images.copy()
-            images[drawn] = drawings(labels[drawn], rng)
+            changed = ~drawn & (rng.random(len(images)) >= config.unaugmented)
+            images[changed] = augment(images[changed], rng, Strength().times(config.augmentation))
+        images[drawn] = drawings(labels[drawn], rng)
         return images
 
     def _measure(self) -> float | None:

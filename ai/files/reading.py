@@ -183,8 +183,9 @@ def read_arrays(path: str | Path, most: int, expect: Expect | None = None) -> di
     arrays = _load(path, most)
     if isinstance(arrays, np.ndarray):
         raise ValueError("is no archive of arrays")
-    for name, array in arrays.items() if expect else ():
-        expect(brief(name, 60), array.shape, array.dtype)
+    if expect:
+        for name, array in arrays.items():
+            expect(brief(name, 60), array.shape, array.dtype)
     return arrays
 
 

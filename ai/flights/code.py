@@ -1,4 +1,4 @@
-"""Code of a flight, short enough for a message: `tranq2-`, base64, `-over`.
+"""Code of a flight, short enough for a message: `tranq3-`, base64, `-over`.
 
 It stands for deflated bytes and their checksum. The bytes are start and claim as one line of JSON, a byte for each run
 of equal steps, and for a flight by sticks the moves of both. docs/sharing.md describes them.

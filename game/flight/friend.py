@@ -12,10 +12,9 @@ from game.core import texts
 from game.core.scene import Push, Scene, push
 from game.flight import sharing
 from game.flight.flight_file import Record
+from game.input.controls import copies_or_pastes
 from game.ui.clipboard import give, pasted
 from game.ui.context import Context
-
-_CONTROL = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
 def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push | None:
@@ -33,7 +32,7 @@ def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push |
         except ValueError as error:
             if not scene.takes_files:
                 context.note(texts.CODE_FILE_REFUSED.format(name=path.name, reason=error))
-    elif event.type == pygame.KEYDOWN and event.key == pygame.K_v and getattr(event, "mod", 0) & _CONTROL:
+    elif copies_or_pastes(event) == "v":
         return None if scene.typing else paste(context)
     return None
 

@@ -30,6 +30,7 @@ STICK_USED: Final = 11000  # beyond which a gamepad counts as used, by any of it
 TRIGGER_PRESSED: Final = 8000
 TRIGGER_RELEASED: Final = 5000
 _FARTHEST: Final = 32767
+_END, _AWAY = 32000, 16000  # from where on an axis is at its end, and below which it was moved away from there
 # Shares of the whole way within which a control is at rest, and beyond which it is pushed as far as it goes.
 _STICK: Final = (0.16, 0.95)
 _TRIGGER: Final = (0.06, 0.95)
@@ -74,16 +75,27 @@ def _rounded(share: float, before: int | None) -> int:
 class Axes:
     """Axes of one gamepad: where each was last reported to be.
 
-    Most triggers rest at 0. Some rest at the far end of the other side, which shows in the first value below 0.
+    Most triggers rest at 0. Some rest at the far end of the other side, which shows in the first value below 0. An axis
+    that is at its end when it is first heard of rests there, and asks for nothing until it was moved away from it.
     """
 
     def __init__(self) -> None:
         self._values: dict[int, int] = {}
         self._below_zero: set[int] = set()
+        self._heard: set[int] = set()
+        self._at_end: set[int] = set()  # axes that have rested at an end since they were first heard of
 
     def move(self, axis: int, value: int) -> None:
         """Take a reported value, -32768 to 32767."""
-        self._values[axis] = value
+        if axis not in self._heard and abs(value) >= _END:
+            self._at_end.add(axis)
+        elif abs(value) < _AWAY:
+            self._at_end.discard(axis)
+        self._heard.add(axis)
+        if axis in self._at_end:
+            self._values.pop(axis, None)
+        else:
+            self._values[axis] = value
         if axis in TRIGGERS and value < 0:
             self._below_zero.add(axis)
 

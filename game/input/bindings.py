@@ -99,7 +99,8 @@ _SPARE_KEYS: Final[Mapping[int, Command]] = {
 }  # fmt: skip
 # Keys that screens, lists and text lines use themselves, and modifier keys.
 _TAKEN_KEYS: Final = frozenset({
-    pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F2, pygame.K_z,
+    pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F1, pygame.K_F2,
+    pygame.K_e, pygame.K_k, pygame.K_m, pygame.K_o, pygame.K_q, pygame.K_t, pygame.K_z,
     *range(pygame.K_0, pygame.K_9 + 1), *range(pygame.K_KP1, pygame.K_KP0 + 1),
     pygame.K_LALT, pygame.K_RALT, pygame.K_LGUI, pygame.K_RGUI, pygame.K_CAPSLOCK, pygame.K_NUMLOCK
 })  # fmt: skip
@@ -162,9 +163,13 @@ class Bindings:
         """Return every key of a meaning."""
         return self.device.fixed.get(meaning, ()) + self.table.get(meaning, ())
 
-    def command(self, code: int) -> Command | None:
-        """Return the command a key gives, if any."""
-        return self._commands.get(code)
+    def command(self, code: int, place: int | None = None) -> Command | None:
+        """Return the command a key gives, if any; letters that nothing is bound to move in menus by their `place`."""
+        return self._commands.get(code) or self.device.spare.get(code if place is None else place)
+
+    def uses(self, code: int) -> bool:
+        """Whether a key is bound to anything."""
+        return any(code in codes for codes in self.table.values())
 
     def may(self, meaning: Meaning, code: int) -> bool:
         """Whether a key may be bound to that meaning."""
@@ -262,8 +267,8 @@ class Bindings:
         return self.device.names.get(word)
 
     def _index(self) -> None:
-        """Rebuild the lookup by key: fixed bindings come first, then chosen ones, then spare letters."""
-        self._commands = dict(self.device.spare)
+        """Rebuild the lookup by key: fixed bindings come first, then chosen ones."""
+        self._commands: dict[int, Command] = {}
         for table in (self.table, self.device.fixed):
             for meaning, codes in table.items():
                 if isinstance(meaning, Command):

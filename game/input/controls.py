@@ -12,8 +12,9 @@ from game.core import texts
 from game.core.settings import Settings
 from game.input import analogue, signs
 from game.input.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Meaning
+from game.input.layout import Layout, place_of
 
-__all__ = ["Command", "Controls", "Held", "presses_main", "translate"]
+__all__ = ["Command", "Controls", "Held", "code_of", "copies_or_pastes", "presses_main", "translate"]
 
 # Signs of stick movements, in addition to the buttons.
 _STICK_SIGNS: Final[dict[Meaning, int]] = {
@@ -22,9 +23,16 @@ _STICK_SIGNS: Final[dict[Meaning, int]] = {
     Command.SLOWER: signs.STICK_LEFT,
     Command.FASTER: signs.STICK_RIGHT,
 }
+_DIRECTIONS: Final = (Command.UP, Command.DOWN, Command.LEFT, Command.RIGHT)
 _MOUSE_SIGNS: Final = {Held.MAIN: signs.MOUSE_LEFT, Held.FINE: signs.MOUSE_MIDDLE}
 # Keypad keys that type a character.
 _KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
+# Keys with which others mean something to the system, or to a line of text.
+_MODIFIERS: Final = {
+    pygame.KMOD_CTRL: (pygame.K_LCTRL, pygame.K_RCTRL),
+    pygame.KMOD_ALT: (pygame.K_LALT, pygame.K_RALT),
+    pygame.KMOD_META: (pygame.K_LMETA, pygame.K_RMETA),
+}
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
 _STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
 
@@ -43,15 +51,36 @@ def translate(event: pygame.event.Event) -> Command | None:
 def presses_main(event: pygame.event.Event) -> bool:
     """Whether a key fires the main engine, and so confirms in a menu; Space always does."""
     return event.type == pygame.KEYDOWN and (
-        event.key == pygame.K_SPACE or event.key in getattr(event, "main_keys", KEYBOARD.standard[Held.MAIN])
+        event.key == pygame.K_SPACE or place_of(event) in getattr(event, "main_keys", KEYBOARD.standard[Held.MAIN])
     )
+
+
+def code_of(event: pygame.event.Event) -> int:
+    """Return the code of a key event as marked by `Controls.process`: what is printed on the key, or its place."""
+    code: int = getattr(event, "code", event.key)
+    return code
+
+
+def copies_or_pastes(event: pygame.event.Event) -> str:
+    """Return "c" for Ctrl+C and "v" for Ctrl+V, on any layout; "" for all other events."""
+    if event.type != pygame.KEYDOWN or not getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_META):
+        return ""
+    return {pygame.K_c: "c", pygame.K_v: "v"}.get(code_of(event), "")
+
+
+def _is_chord(event: pygame.event.Event, keys: Bindings) -> bool:
+    """Whether a key is pressed with Ctrl, Alt or the system key, which the player has bound to nothing."""
+    if any(event.key in codes for codes in _MODIFIERS.values()):
+        return False
+    held = [codes for mask, codes in _MODIFIERS.items() if getattr(event, "mod", 0) & mask]
+    return any(not any(map(keys.uses, codes)) for codes in held)
 
 
 def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Command | None:
     if event.type == pygame.KEYDOWN:
         if event.key == pygame.K_RETURN and getattr(event, "mod", 0) & pygame.KMOD_ALT:
             return Command.FULLSCREEN
-        return keys.command(event.key)
+        return None if _is_chord(event, keys) else keys.command(code_of(event), place_of(event))
     return buttons.command(event.button) if event.type == pygame.CONTROLLERBUTTONDOWN else None
 
 
@@ -77,6 +106,7 @@ class Controls:
 
     Attributes:
         keys, buttons: bindings of the keyboard and of the gamepads.
+        layout: the keyboard's layout.
         mouse_in_use: whether the mouse was used last; then no ring is drawn around the focused widget.
         listening: whether the next press is to be bound; it gives no command.
         spelling: whether text is being entered: a key that types a character gives no command.
@@ -87,7 +117,8 @@ class Controls:
 
     def __init__(self) -> None:
         self.keys, self.buttons = Bindings(KEYBOARD), Bindings(PAD)
-        self._keys: set[int] = set()
+        self.layout = Layout()
+        self._keys: set[int] = set()  # places
         self._pads: dict[int, _Pad] = {}
         self.used_pad: int | None = None
         self.mouse_in_use = self.listening = self.spelling = False
@@ -150,7 +181,12 @@ class Controls:
         """Return the name of every key of a meaning, as written on the keyboard."""
         if meaning is Command.BACK:  # in a form, the pause keys go back too; the keys of Back itself are less familiar
             meaning = Command.PAUSE
-        return [key_name(code) for code in self.keys.codes(meaning)]
+        return [self.key_word(meaning, code) for code in self.keys.codes(meaning)]
+
+    def key_word(self, meaning: Meaning | None, code: int) -> str:
+        """Return what is printed on a key of a meaning: a flight control has a place, a command what is written."""
+        layout = self.layout
+        return key_name(layout.printed(code) if isinstance(meaning, Held) else layout.key(code))
 
     def gamepad_signs(self, meaning: Meaning) -> list[str]:
         """Return the signs of a meaning's buttons and sticks, for the gamepad in use or the one plugged in last."""
@@ -182,15 +218,19 @@ class Controls:
     def process(self, event: pygame.event.Event) -> None:
         """Process one event, and mark it with its `command`."""
         match event.type:
+            case pygame.KEYMAPCHANGED:
+                self.layout = Layout()
             case pygame.KEYDOWN:
-                self._keys.add(event.key)
+                event.code, event.chord = self.layout.code_of(event), _is_chord(event, self.keys)
+                if not event.chord:
+                    self._keys.add(place_of(event))
                 event.command = self._command(event)
                 event.main_keys = self.keys.codes(Held.MAIN)
                 self.used_pad, self.mouse_in_use = None, False
             case pygame.MOUSEMOTION | pygame.MOUSEBUTTONDOWN:
                 self.mouse_in_use = True
             case pygame.KEYUP:
-                self._keys.discard(event.key)
+                self._keys.discard(place_of(event))
             case pygame.WINDOWFOCUSLOST:
                 self.release_all()
             case pygame.CONTROLLERDEVICEADDED:
@@ -210,6 +250,19 @@ class Controls:
         if self.listening or (self.spelling and _types(event)):
             return None
         return _command(event, self.keys, self.buttons)
+
+    @property
+    def direction(self) -> Command | None:
+        """The direction that is held as menus understand it; None for none."""
+        return next((command for command in _DIRECTIONS if self._holds_command(command)), None)
+
+    def _holds_command(self, command: Command) -> bool:
+        if any(self.keys.command(self.layout.key(place), place) is command for place in self._keys):
+            return True
+        return any(
+            command in pad.pushed or any(self.buttons.command(button) is command for button in pad.buttons)
+            for pad in self._pads.values()
+        )
 
     def holds(self, held: Held, *, axes: bool = True) -> bool:
         """Whether a control is held; without `axes`, by a key or a button, and not by a stick or trigger."""
@@ -252,14 +305,15 @@ class Controls:
     def _move(self, event: pygame.event.Event) -> None:
         pad = self._pad(event)
         pad.axes.move(event.axis, event.value)
+        value = pad.axes.value(event.axis)
         if event.axis in TRIGGERS:
-            self._pull(event, pad, TRIGGERS[event.axis])
-        elif abs(event.value) > analogue.STICK_USED:
+            self._pull(event, pad, TRIGGERS[event.axis], value)
+        elif abs(value) > analogue.STICK_USED:
             self._use(event)
         for command, (axis, direction) in analogue.STICK_COMMANDS.items():
             if axis != event.axis:
                 continue
-            push = direction * event.value
+            push = direction * value
             if push > analogue.STICK_PUSHED and command not in pad.pushed:
                 pad.pushed.add(command)
                 event.command = command
@@ -267,14 +321,24 @@ class Controls:
             elif push < analogue.STICK_RELEASED:
                 pad.pushed.discard(command)
 
-    def _pull(self, event: pygame.event.Event, pad: _Pad, trigger: int) -> None:
+    def _pull(self, event: pygame.event.Event, pad: _Pad, trigger: int, value: int) -> None:
         """Treat a trigger's axis as a button."""
-        if event.value > analogue.TRIGGER_PRESSED and trigger not in pad.buttons:
+        if value > analogue.TRIGGER_PRESSED and trigger not in pad.buttons:
             pad.buttons.add(trigger)
             event.command, event.trigger = None if self.listening else self.buttons.command(trigger), trigger
             self._use(event)
-        elif event.value < analogue.TRIGGER_RELEASED:
+        elif value < analogue.TRIGGER_RELEASED:
             pad.buttons.discard(trigger)
+
+
+def unmapped(device_index: int) -> bool:
+    """Whether a device that was plugged in is a gamepad of which nobody knows what its buttons are."""
+    from pygame._sdl2 import controller
+
+    try:
+        return not controller.is_controller(device_index)
+    except pygame.error:
+        return False  # unplugged again before this event was processed
 
 
 def key_name(code: int) -> str:

@@ -23,7 +23,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import paint_on
 from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
 from game.flight.friend import arrival
-from game.input.controls import Command, translate
+from game.input.controls import Command, copies_or_pastes, translate, unmapped
 from game.shell.scene_manager import SceneManager
 from game.shell.window import GameWindow
 from game.ui.notes import Note
@@ -73,6 +73,8 @@ class App:
         self.context = context
         self._now, self._capped = now, capped
         self._clock = pygame.time.Clock()
+        self._buttons: set[int] = set()  # of the mouse, that are held
+        self._takes_text: bool | None = None  # whether letters are composed; None before the first frame
         self._steps = FixedStep()
         self.notes = Note()
         self.scan = SwitchScan(context)
@@ -112,6 +114,7 @@ class App:
         """Run one frame: events, the steps that are due, drawing. Return False once the game is closed."""
         for event in pygame.event.get():
             self._handle(event)
+        self._take_text()
         time_now = self._now()
         steps = self._steps.advance(time_now - self._last)
         self._last = time_now
@@ -128,6 +131,13 @@ class App:
         if self._capped:
             self._clock.tick(self._frame_rate)
         return self.scenes.running
+
+    def _take_text(self) -> None:
+        """Have letters composed while a line of text takes them, and at no other time."""
+        wanted = self.context.controls.spelling
+        if wanted is not self._takes_text:
+            self._takes_text = wanted
+            pygame.key.start_text_input() if wanted else pygame.key.stop_text_input()
 
     def close(self) -> None:
         """Leave the top scene, save the settings and close the window."""
@@ -181,8 +191,10 @@ class App:
     # Events
 
     def _handle(self, event: pygame.event.Event) -> None:
-        if event.type == pygame.MOUSEMOTION and not self._moved(event):
-            return
+        if event.type == pygame.MOUSEMOTION:
+            if not self._moved(event):
+                return
+            self._let_go(event)
         self._follow(event)
         self.context.sound.handle_event(event)
         match event.type:
@@ -206,6 +218,12 @@ class App:
             event = self._in_points(event)
         elif not self.context.controls.mouse_in_use:
             self.canvas.pointer = None
+        self._obey(event)
+
+    def _obey(self, event: pygame.event.Event) -> None:
+        """Do what an event asks of the whole game, or pass it on to a scene."""
+        if event.type == pygame.KEYDOWN and event.chord and not self._means(event):
+            return
         match translate(event):
             case Command.FULLSCREEN | Command.MUTE as command:
                 toggle = self.context.toggle_mute if command is Command.MUTE else self.context.toggle_full_screen
@@ -214,6 +232,16 @@ class App:
                 self._save_screenshot()
             case _:
                 self._guarded(lambda: self._pass_on(event))
+
+    def _means(self, event: pygame.event.Event) -> bool:
+        """Whether a key with Ctrl, Alt or the system key means anything: Alt+Enter, Ctrl+C, Ctrl+V, or in a text."""
+        return translate(event) is not None or bool(copies_or_pastes(event)) or self.context.controls.spelling
+
+    def _let_go(self, event: pygame.event.Event) -> None:
+        """Let go of mouse buttons whose release was not heard, as a movement of the mouse tells."""
+        held = {number for number, down in enumerate(getattr(event, "buttons", ()), 1) if down}
+        for button in sorted(self._buttons - held) if hasattr(event, "buttons") else ():
+            self._handle(pygame.event.Event(pygame.MOUSEBUTTONUP, pos=event.pos, button=button))
 
     def _moved(self, event: pygame.event.Event) -> bool:
         """Whether the mouse moved, and not the window below it."""
@@ -225,8 +253,14 @@ class App:
         controls = self.context.controls
         used_mouse = controls.mouse_in_use
         controls.process(event)
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self._buttons.add(event.button)
+        elif event.type == pygame.MOUSEBUTTONUP:
+            self._buttons.discard(event.button)
         if event.type == pygame.CONTROLLERDEVICEADDED and controls.gamepad_name:
             self.notes.show(texts.PAD_FOUND.format(name=controls.gamepad_name))
+        elif event.type == pygame.JOYDEVICEADDED and unmapped(event.device_index):
+            self.notes.show(texts.PAD_UNKNOWN)
         elif translate(event) is Command.UNPLUGGED:
             self.notes.show(texts.PAD_LOST)
         if controls.mouse_in_use != used_mouse:

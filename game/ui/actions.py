@@ -10,7 +10,7 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Transition
-from game.input.controls import Command, Controls, key_name, translate
+from game.input.controls import Command, Controls, code_of, translate
 from game.ui.hints import Hint
 
 Run = Callable[[], Transition | None]
@@ -41,13 +41,13 @@ class Action:
         if isinstance(self.key, Command):
             # In a menu the pause keys go back too.
             return command is self.key or (self.key is Command.BACK and command is Command.PAUSE)
-        return event.type == pygame.KEYDOWN and event.key == self.key
+        return event.type == pygame.KEYDOWN and code_of(event) == self.key
 
     def key_word(self, controls: Controls) -> str:
         """Return the name of its key, or the sign of its button while a gamepad is in use."""
         if self.gamepad is not None and controls.gamepad_in_use:
             return controls.word(self.gamepad)
-        return controls.word(self.key) if isinstance(self.key, Command) else key_name(self.key)
+        return controls.word(self.key) if isinstance(self.key, Command) else controls.key_word(None, self.key)
 
     def hint_for(self, controls: Controls) -> Hint:
         """Return its hint."""

@@ -14,7 +14,7 @@ import pygame
 from pygame_gui.elements import UITextEntryLine
 
 from game.drawing.tokens import FAINT, HUMAN, TEXT
-from game.input.controls import Command, translate
+from game.input.controls import Command, code_of, copies_or_pastes, translate
 from game.ui.clipboard import pasted
 from game.ui.widget import NOWHERE, OnPress, PointsManager, RowWidget
 
@@ -33,6 +33,7 @@ _REPEAT_EVERY: Final = 3
 class TextLine(UITextEntryLine):
     """Text with a caret and a selection; the owner passes events to it while it is edited.
 
+    `composed` are letters under way, of a writing in which several keys make one; they are no part of the text yet.
     `fits` removes from a text all that is not allowed; `limit` is the largest number of letters.
     """
 
@@ -55,6 +56,7 @@ class TextLine(UITextEntryLine):
 
     def rest(self) -> None:
         self._held: pygame.event.Event | None = None
+        self.composed = ""
 
     @property
     def selection(self) -> tuple[int, int]:
@@ -76,9 +78,15 @@ class TextLine(UITextEntryLine):
         self.place(low + len(text))
 
     def process_event(self, event: pygame.event.Event) -> bool:
+        if event.type == pygame.TEXTEDITING:
+            self.composed = self._fits(event.text)
+            return True
         if event.type == pygame.TEXTINPUT:
+            self.composed = ""
             self.insert(event.text)
             return True
+        if event.type == pygame.KEYDOWN and self.composed:
+            return True  # it belongs to the composition
         if event.type == pygame.KEYUP and self._held and event.key == self._held.key:
             self._held = None
         if event.type != pygame.KEYDOWN:
@@ -99,11 +107,12 @@ class TextLine(UITextEntryLine):
         if event.key in (pygame.K_RETURN, pygame.K_KP_ENTER):
             return False
         try:
-            if event.key == pygame.K_v and getattr(event, "mod", 0) & _CONTROL:
+            if copies_or_pastes(event) == "v":
                 if text := pasted():
                     self.insert(text)
                 return True
-            return bool(super().process_event(event))
+            known = {"key": code_of(event)} if getattr(event, "mod", 0) & _CONTROL else {}
+            return bool(super().process_event(pygame.event.Event(event.type, {**event.dict, **known})))
         except pygame.error:
             return True  # there is no clipboard
 
@@ -163,7 +172,7 @@ class EntryRow(RowWidget):
             return False
         if event.type == pygame.TEXTINPUT and self._fresh:
             return True  # the letter of the key that started typing
-        if self.line.process_event(event):
+        if self.line.process_event(event) or getattr(event, "chord", False):
             return True
         if event.type == pygame.KEYDOWN and event.key in (pygame.K_RETURN, pygame.K_KP_ENTER):
             self.outcome = self.press()
@@ -224,8 +233,15 @@ class EntryRow(RowWidget):
         y, baseline = box.bottom - 1, box.bottom - 9
         if self.typing and low < high:
             canvas.rounded((lefts[low] - 3, baseline - size, lefts[high] - lefts[low] + 6, 1.4 * size), 3, HUMAN, 0.2)
-        canvas.text(self.line.text, (lefts[0], baseline), size=size)
-        if self.typing:
+        before, after = self.line.text[: self.line.edit_position], self.line.text[self.line.edit_position :]
+        canvas.text(before, (lefts[0], baseline), size=size)
+        if self.typing and self.line.composed:
+            under_way = canvas.text(self.line.composed, (caret, baseline), size=size, colour=HUMAN)
+            canvas.line(under_way.bottomleft, under_way.bottomright, HUMAN, 1)
+            canvas.text(after, (under_way.right, baseline), size=size)
+        else:
+            canvas.text(after, (caret, baseline), size=size)
+        if self.typing and not self.line.composed:
             canvas.line((caret + 0.5, baseline - 0.95 * size), (caret + 0.5, baseline + 0.3 * size), HUMAN, 1.5)
         canvas.line((box.left, y), (box.right, y), FAINT, 1)
         reach = box.width * (1.0 if self.typing else self.warmth)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Final, TypeVar
 
 import pygame
@@ -50,6 +51,7 @@ class Form:
         self._context, self._on_back = context, on_back
         self._index = 0
         self._held_steps = 0
+        self._held_direction: Command | None = None
         self.used = self._pressed = self._acted = False
 
     @property
@@ -120,8 +122,9 @@ class Form:
             event = pygame.event.Event(event.type, {**event.dict, "pos": (x - right, y - down)})
         return self._sounding(lambda: self._take(event, actions))
 
-    def confirm(self) -> Transition | None:
-        return self._sounding(self._press)
+    def confirm(self, *, pointed: bool = True) -> Transition | None:
+        """Press the focused widget; not `pointed`, whatever the mouse points at."""
+        return self._sounding(self._press if pointed else partial(self._press, ringed=True))
 
     def _sounding(self, act: OnPress) -> Transition | None:
         """Do something, with the sound of its effect on the focused widget."""
@@ -132,8 +135,10 @@ class Form:
         self._tell_spelling()
         return outcome
 
-    def _press(self) -> Transition | None:
+    def _press(self, *, ringed: bool = False) -> Transition | None:
         self._show_focus()
+        if ringed and self.focused:
+            self.focused.ringed = True
         self._pressed = True
         return self.focused.press() if self.focused else None
 
@@ -206,12 +211,17 @@ class Form:
             self._index = neighbour([w.box for w in self.widgets], self._index, direction, in_order=self.in_order)
 
     def _repeat(self) -> None:
-        steer = 0 if self.typing else self._context.controls.steer
-        self._held_steps = self._held_steps + 1 if steer else 0
+        """Go on moving while a direction is held: sideways the value, up and down the focus."""
+        direction = None if self.typing else self._context.controls.direction
+        self._held_steps = self._held_steps + 1 if direction and direction is self._held_direction else 0
+        self._held_direction = direction
         since = self._held_steps - _REPEAT_AFTER
-        if since >= 0 and since % _REPEAT_EVERY == 0 and self.focused:
-            widget, reading = self.focused, _reading(self.focused)
-            widget.shift(-1 if steer == 1 else 1)
+        if since >= 0 and since % _REPEAT_EVERY == 0 and self.focused and direction:
+            widget, reading, (across, _) = self.focused, _reading(self.focused), _ARROWS[direction]
+            if across:
+                widget.shift(across)
+            elif not widget.take(pygame.event.Event(pygame.USEREVENT, command=direction)):
+                self._move(direction)
             self._sound(widget, reading)
 
     def _sound(self, focused: Widget | None, reading: object) -> None:

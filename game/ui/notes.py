@@ -17,7 +17,7 @@ _LONGEST: Final = 220  # characters
 _WIDEST: Final = 480.0  # points of a line; a longer message takes more lines
 _MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
 _COVER: Final = 0.96  # opacity of the panel, over any background
-_HIGH, _LOW = 0.10, 0.84  # where its top may be, in shares of the height that is left
+_HIGH, _LOW = 0.10, 0.70  # where its top may be, in shares of the height that is left
 
 
 class Note:

@@ -11,6 +11,7 @@ from game.core.scene import Scene, Transition
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN
 from game.input.controls import Command, Held
+from game.input.layout import place_of
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import Hint
@@ -44,6 +45,7 @@ class SwitchScan:
     def __init__(self, context: Context) -> None:
         self._context = context
         self.index = self._since = self._held = 0
+        self._calm = 0  # steps since the last choice
         self._mouse_still, self._mouse_down = _STILL, False
         self._scene: Scene | None = None
 
@@ -64,10 +66,11 @@ class SwitchScan:
             return None
         self._mouse_still += 1
         self._since += 1
+        self._calm += 1
         if scene is not self._scene:
-            self._scene, self.index, self._since = scene, 0, 0
+            self._scene, self.index, self._since, self._calm = scene, 0, 0, 0
         if scene.takes_switch:
-            self.index = self._since = 0
+            self.index = self._since = self._calm = 0
             return self._hold(scene)
         self._held = 0
         if self._since >= DWELL:
@@ -83,10 +86,10 @@ class SwitchScan:
             self._mouse_down = event.type == pygame.MOUSEBUTTONDOWN
         if not (self._context.settings.one_switch and not scene.takes_switch and self._is_press(event, scene)):
             return False, None
-        if self._since < _LEAST and self.index == 0:
-            return True, None  # the press that led here is still being let go
+        if self._calm < _LEAST:
+            return True, None  # the press that led here is still being let go, by a hand that trembles
         stops = self.stops(scene, canvas)
-        self._since = 0
+        self._since = self._calm = 0
         return True, self._choose(scene, stops[self.index % len(stops)]) if stops else None
 
     def draw(self, scene: Scene, canvas: Canvas) -> None:
@@ -125,7 +128,7 @@ class SwitchScan:
             return stop.hint.run() if stop.hint and stop.hint.run else None
         form.focus(widget)
         if not widget.by_arrows:
-            return form.confirm()
+            return form.confirm(pointed=False)
         widget.advance()
         return None
 
@@ -136,10 +139,13 @@ class SwitchScan:
             return False
         if event.type == pygame.MOUSEBUTTONDOWN:
             return bool(event.button == 1 and self._mouse_still >= _STILL)
-        if event.type not in (pygame.KEYDOWN, pygame.CONTROLLERBUTTONDOWN):
-            return False
         by_key = event.type == pygame.KEYDOWN
-        bindings, code = (controls.keys, event.key) if by_key else (controls.buttons, event.button)
+        bindings = controls.keys if by_key else controls.buttons
+        code = place_of(event) if by_key else getattr(event, "button", None)
+        if event.type == pygame.CONTROLLERAXISMOTION:
+            code = getattr(event, "trigger", None)
+        elif not by_key and event.type != pygame.CONTROLLERBUTTONDOWN:
+            return False
         switches = bindings.codes(Held.MAIN) + bindings.codes(Command.CONFIRM)
         return code in switches and code not in bindings.codes(Command.UP)
 

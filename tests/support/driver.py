@@ -30,6 +30,7 @@ class Driver:
         self.app = app
         self.unseen = False
         self._skipped = 0
+        self._held: set[int] = set()  # buttons of the mouse
 
     @property
     def top(self) -> Any:
@@ -86,6 +87,10 @@ class Driver:
 
     def post(self, event_type: int, *, drawn: bool = True, **values: Any) -> bool:
         """Let an event come in with a frame."""
+        if event_type == pygame.MOUSEBUTTONDOWN:
+            self._held.add(values["button"])
+        elif event_type == pygame.MOUSEBUTTONUP:
+            self._held.discard(values["button"])
         pygame.event.post(pygame.event.Event(event_type, values))
         return self._play(drawn=drawn)
 
@@ -112,7 +117,8 @@ class Driver:
         return x, y
 
     def move(self, points: tuple[float, float]) -> None:
-        self.post(pygame.MOUSEMOTION, pos=self.to_window(points), rel=(0, 0), buttons=(0, 0, 0))
+        buttons = tuple(int(button in self._held) for button in (1, 2, 3))
+        self.post(pygame.MOUSEMOTION, pos=self.to_window(points), rel=(0, 0), buttons=buttons)
 
     def click(self, points: tuple[float, float]) -> None:
         self.move(points)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
+from ai.digits.mnist import MnistError, bright
+from ai.explain.excited import MostExciting
 from ai.explain.unit_sums import Place
 from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
-from game.core.scene import push
+from game.core.scene import Replace, Route, Transition
 from game.digits.cells import CellPicker
+from game.digits.kept import mnist_test
 from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
@@ -30,6 +34,7 @@ if TYPE_CHECKING:
 
 _LEAST: Final = 280.0
 _READ, _GIVEN, _TILES, _SEEN = 250.0, 170.0, 76.0, 110.0  # heights of pictures
+_SEARCHED: Final = 400  # digits of other people
 _MOST_WEIGHTS: Final = 400_000  # of a stage whose weights are shown as pictures
 
 
@@ -45,7 +50,11 @@ class DigitInsideScene(PanelScene):
         super().__init__(context)
         self._classifier, self._image = classifier, np.asarray(image, np.float32)
         self.walk = UnitWalk(classifier, self._image)
-        self._seen = PaintCache()
+        self._seen, self._exciting = PaintCache(), PaintCache()
+        self._digits = np.empty((0, 28, 28), np.float32)  # of other people, in which is searched what excites a filter
+        with suppress(MnistError):  # without them the picture is left out
+            self._digits = bright(mnist_test(context.assets_dir)[0][:_SEARCHED])
+        self._searches: dict[int, MostExciting] = {}
         self.build()
 
     def actions(self) -> Table:
@@ -54,6 +63,17 @@ class DigitInsideScene(PanelScene):
             Action(Command.PREVIOUS, lambda: self._choose(self.walk.number - 1), texts.PATCH_BACK),
             self.form.goes_back(texts.HINT_BACK),
         ]
+
+    def update(self) -> Transition | None:
+        """Search on for what excites the filters that are shown, a part per frame."""
+        walk = self.walk
+        if walk.stage.kind == "convolution" and not walk.at_answer and len(self._digits):
+            if walk.number not in self._searches:
+                before = walk.stages[: walk.number + 1]
+                self._searches[walk.number] = MostExciting(self._classifier.network, before, self._digits)
+            if not self._searches[walk.number].done:
+                self._searches[walk.number].go_on()
+        return super().update()
 
     # What is looked at
 
@@ -112,7 +132,7 @@ class DigitInsideScene(PanelScene):
         describe_sum(middle, walk)
         if not walk.at_answer:
             self._describe_given(right)
-        right.words([(texts.WHY_NOT_WORD, lambda: push("why_not", self._classifier, self._image))])
+        right.words([(texts.WHY_NOT_WORD, lambda: Replace(Route("why_not", (self._classifier, self._image))))])
         self._follow()
 
     def _stages(self) -> list[str]:
@@ -150,6 +170,10 @@ class DigitInsideScene(PanelScene):
         if (weights := self._filters_of(self.walk.channel)) is not None:
             self._weights, self._weights_of = weights, self.walk.channel
             self._filters = self._tiles(column)
+            column.gap()
+        if stage.kind == "convolution" and len(self._digits):
+            column.caption(texts.PATCH_PICTURES["excites"])
+            column.picture(_SEEN, self._draw_exciting)
             column.gap()
         self._given_maps = self._tiles(column, _TILES if self._gives else _GIVEN)
 
@@ -212,6 +236,13 @@ class DigitInsideScene(PanelScene):
             pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
             corner = (box.left + beside * pixel, box.top + above * pixel)
             canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
+
+    def _draw_exciting(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the ink that excites the filter most, of what was searched so far."""
+        search, channel, side = self._searches.get(self.walk.number), self.walk.place[2], min(box.size)
+        if search and channel in search.patches:
+            patch = search.patches[channel]
+            self._exciting.draw(canvas, (*box.topleft, side, side), patch.tobytes(), framed(patch))
 
 
 def _signed(values: Numbers) -> Numbers:

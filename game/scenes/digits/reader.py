@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ai.digits.classifier import DIGITS
-from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stroke_stages
+from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stroke_stages, stroke_width
 from ai.files import brief
 from game.digits.kept import classifier_in
 from game.digits.pictures import Numbers, visible
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 SURE: Final = 0.9  # nine in ten rightly read test images have a higher probability
 LIKELY: Final = 0.75  # and 99 in a hundred of those that Modern reads
+ONE_STROKE: Final = 3.5  # pixels of width: ones have 2.0 to 3.1, what is wider may be a ring that has closed
 LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
 _log = logging.getLogger("tranquility")
 
@@ -54,7 +55,7 @@ class Reading:
     probabilities: dict[str, Numbers]
 
     def verdict(self, name: str) -> Verdict:
-        """Return the confidence in a network's answer: full only if the other networks agree."""
+        """Return the confidence in a network's answer: full only if the others agree, for a 1 if it is one stroke."""
         ink = float(self.stages.centred.sum())
         if ink == 0 or name not in self.probabilities:
             return Verdict.EMPTY
@@ -64,6 +65,8 @@ class Reading:
         agreed = len({int(values.argmax()) for values in self.probabilities.values()}) == 1
         if not agreed:
             return Verdict.DISPUTED
+        if int(self.probabilities[name].argmax()) == 1 and stroke_width(self.stages.centred > 0.5) > ONE_STROKE:
+            return Verdict.LIKELY
         return Verdict.SURE if surest >= SURE else Verdict.LIKELY
 
 

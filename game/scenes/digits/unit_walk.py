@@ -98,15 +98,16 @@ class UnitWalk:
                 self.look_at((*self.place[:2], channel))
 
     def _sum_up(self) -> None:
-        """Write the unit's sum out, and look at the input's map that has most say in it."""
+        """Write the unit's sum out, and look at the input's map through which the way leads."""
         self.field = receptive_field(self.stages[: self.number + 1], self.place)
         self.unit = unit = None if self.stage.kind == "other" or self.at_answer else self.stage.unit(self.place)
         if unit is None:
             self.channel = min(self.channel, self.stage.inputs.shape[2] - 1)
         elif unit.weights is None:
             self.channel = self.place[2]
-        else:
-            self.channel = int(np.abs(unit.products.sum(axis=(0, 1))).argmax())
+        else:  # the map in which the number stands that was looked at before
+            before = self.places[self.number - 1] if self.number else None
+            self.channel = int(np.abs(unit.products.sum(axis=(0, 1))).argmax()) if before is None else before[2]
 
     def _loudest(self, number: int) -> Place:
         """Return the unit of a stage with the largest output."""

@@ -11,7 +11,7 @@ import pygame
 from ai.digits.preprocessing import SIDE, Image
 from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
-from game.core.scene import Transition, push
+from game.core.scene import Replace, Route, Transition
 from game.digits import certainty
 from game.digits.pictures import SIGNED, Numbers, framed, visible
 from game.drawing.canvas import Canvas
@@ -149,7 +149,7 @@ class WhyNotScene(PanelScene):
         self._bars.shown, self._bars.best = eased, int(self.probabilities.argmax())
         self._bars.values = [(value, 0.0) for value in self.probabilities.tolist()]
         self._describe_evidence(evidence)
-        evidence.words([(texts.WHY_NOT_INSIDE, lambda: push("digit_inside", self._classifier, self.image))])
+        evidence.words([(texts.WHY_NOT_INSIDE, lambda: Replace(Route("digit_inside", (self._classifier, self.image))))])
 
     def _describe_evidence(self, column: Column) -> None:
         if self.seen is None:

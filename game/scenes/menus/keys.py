@@ -11,7 +11,8 @@ from game.core import texts
 from game.core.scene import Transition
 from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
 from game.input.bindings import Bindings, Meaning
-from game.input.controls import Command, Controls, Held, key_name
+from game.input.controls import Command, Controls, Held, code_of
+from game.input.layout import place_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 from game.ui.widget import RowWidget, mix
@@ -57,7 +58,7 @@ class BindingCell(RowWidget):
 
     def take(self, event: pygame.event.Event) -> bool:
         """Bind the next key or button; events of the other device are ignored."""
-        key = event.key if event.type == pygame.KEYDOWN else None
+        key = self._code(event) if event.type == pygame.KEYDOWN else None
         button = event.button if event.type == pygame.CONTROLLERBUTTONDOWN else getattr(event, "trigger", None)
         if not self.typing:
             if key == pygame.K_DELETE:
@@ -68,6 +69,10 @@ class BindingCell(RowWidget):
         elif (code := button if self._for_pads else key) is not None:
             self._bind(code)
         return True
+
+    def _code(self, event: pygame.event.Event) -> int:
+        """Return the code to bind: a flight control goes by the key's place, a command by what is printed on it."""
+        return place_of(event) if isinstance(self._meaning, Held) else code_of(event)
 
     def _bind(self, code: int) -> None:
         what = self._word(code)
@@ -94,7 +99,7 @@ class BindingCell(RowWidget):
         return words.format(what=texts.BINDINGS[meaning.name], keys=keys, lost=texts.BINDINGS_OR.join(lost))
 
     def _word(self, code: int) -> str:
-        return self._controls.gamepad_sign(code) if self._for_pads else key_name(code)
+        return self._controls.gamepad_sign(code) if self._for_pads else self._controls.key_word(self._meaning, code)
 
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)

@@ -195,7 +195,7 @@ def why_by_values(decision: SharedDecision, pad: int) -> Why:
     from ai.copilot.guardian import ActionSource
 
     source, asked = ActionSource(int(decision.source[0])), int(decision.pilot[0])
-    title = texts.COPILOT_PANEL_WHY[source.name]
+    title = texts.COPILOT_PANEL_WHY["HANDS_OFF" if asked == COAST else source.name]
     points = decision.points[0, pad]
     if not np.isfinite(points).all():
         return title, *texts.VALUES_DAMAGED

@@ -75,6 +75,39 @@ def test_the_unit_that_is_followed_leads_from_a_patch_to_the_answer(inside: Driv
     assert walk.number == len(walk.stages) - 1
 
 
+def test_each_map_that_is_followed_is_the_one_in_which_the_last_number_stands(inside: Driver):
+    walk = scene(inside).walk
+    for number in range(1, len(walk.stages)):
+        inside.key(pygame.K_n)
+        place = walk.places[number - 1]
+        assert place is not None
+        row, column, channel = place
+        assert walk.channel == channel
+        assert walk.stage.inputs[row, column, channel] == walk.value(number - 1)
+
+
+def test_a_filter_is_shown_with_the_ink_that_excites_it_most(inside: Driver, modern):
+    driver, number = inside, 0
+    assert texts.PATCH_PICTURES["excites"]
+    driver.frames(110)
+    search = scene(driver)._searches[number]
+    assert search.done
+    kernel = modern.network.layers[0]
+    channel = scene(driver).walk.place[2]
+    patch = search.patches[channel]
+    given = float((patch * kernel.kernels[:, :, 0, channel].T).sum() + kernel.bias[channel])
+    assert given == pytest.approx(search.most[channel], abs=1e-4)
+
+
+def test_questions_about_one_digit_do_not_pile_up(inside: Driver):
+    inside.press_on(texts.WHY_NOT_WORD)
+    assert inside.top_name == "WhyNotScene"
+    inside.press_on(texts.WHY_NOT_INSIDE)
+    assert inside.top_name == "DigitInsideScene"
+    inside.key(pygame.K_ESCAPE)
+    assert not inside.app.scenes.running, "it was the only scene"
+
+
 def test_all_figures_of_the_sum_are_written(inside: Driver, monkeypatch):
     walk, words = scene(inside).walk, words_written(monkeypatch)
     for number in (0, 1, 3, 6, 8):
@@ -120,6 +153,7 @@ def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver):
     digit = maps(inside)[0]
     player.press("down", "up")  # from now on there is no mouse in use
     inside.form.focus(digit)
+    scene(inside)._look_at((10, 10, walk.place[2]))
     row, column, channel = walk.place
     player.press("confirm", "down", "down", "left")
     assert digit.typing

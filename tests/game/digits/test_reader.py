@@ -16,6 +16,7 @@ from game.scenes.digits.answer import write_answer
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.reader import Reader, Reading, Verdict, best_two
 from tests.support import inline_worker
+from tests.support.stranger_digits import narrow
 
 
 @pytest.fixture(scope="module")
@@ -70,6 +71,21 @@ def test_two_networks_have_to_agree_to_be_sure(reader: Reader):
     assert reading.verdict("modern") is Verdict.SURE
     reading.probabilities["classic"] = np.roll(reading.probabilities["classic"], 1)
     assert reading.verdict("modern") is Verdict.DISPUTED
+
+
+@pytest.mark.parametrize("digit", [0, 8])
+def test_a_narrow_digit_is_never_surely_another(reader: Reader, digit: int):
+    rng = np.random.default_rng(2)
+    for _ in range(150):
+        reading = reader.read(stroke_stages(redrawn(narrow(digit, rng)), np.zeros((9, 9))))
+        if reading.probabilities["modern"].argmax() != digit:
+            assert reading.verdict("modern") is not Verdict.SURE
+
+
+def test_a_one_of_one_stroke_is_sure(reader: Reader):
+    for style in ([(48, 0), (52, 100)], [(56, 0), (44, 100)]):
+        reading = reader.read(stroke_stages(redrawn([np.array(style, float)]), np.zeros((9, 9))))
+        assert reading.verdict("modern") is Verdict.SURE
 
 
 def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest.MonkeyPatch):

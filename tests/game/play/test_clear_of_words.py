@@ -10,10 +10,10 @@ import pytest
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.scene import Push
+from game.core.settings import HELP
 from game.drawing.canvas import Canvas
 from game.explain import explained
 from game.flight import networks
-from game.flight.credit import HELP
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene

@@ -150,7 +150,8 @@ class Reader:
         at = pygame.mouse.get_pos()
         if name != MAIN:
             at = self.driver.to_window((20 if name == LEFT else 1260, 400))
-            pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=at, rel=(0, 0), buttons=(0, 0, 0)))
+            buttons = int(MAIN in self.held), 0, int(bool(self.held & {LEFT, RIGHT}))
+            pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=at, rel=(0, 0), buttons=buttons))
         kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
         pygame.event.post(pygame.Event(kind, pos=at, button=1 if name == MAIN else 3))
 
