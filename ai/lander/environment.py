@@ -90,8 +90,9 @@ class LanderEnv:
         conditions: Conditions = CALM,
         weights: RewardWeights | None = None,
     ) -> None:
-        if num_envs < 1 or frame_skip < 1:
-            raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
+        for name, number in (("num_envs", num_envs), ("frame_skip", frame_skip)):
+            if isinstance(number, bool) or not isinstance(number, int | np.integer) or number < 1:
+                raise ValueError(f"{name} is a whole number from 1 on, not {number}")
         if not (isinstance(spawn, Curriculum) or (isinstance(spawn, str) and spawn in SPAWNS)):
             raise ValueError(f"spawn is one of {', '.join(SPAWNS)}, or a Curriculum, not {spawn!r}")
         self.num_envs, self.frame_skip = num_envs, frame_skip
@@ -130,8 +131,8 @@ class LanderEnv:
 
     @property
     def gravity(self) -> float:
-        """Gravity in m/s²; can be changed at any time, for all landers."""
-        return -float(self.world.gravity[1])
+        """Gravity in m/s², of the first lander where they differ; can be changed at any time, for all landers."""
+        return -float(self.world.gravity[..., 1].flat[0])
 
     @gravity.setter
     def gravity(self, gravity: float) -> None:

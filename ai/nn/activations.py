@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from types import MappingProxyType
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +48,11 @@ class Activation:
             return out
 
         return cls(with_out, lambda x, _y, out: np.copyto(out, derivative(x)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle an activation by its name, if it has one."""
+        given = (self.function, self.slope, None) if self.name is None else (None, None, self.name)
+        return _activation, (*given, dict(self.options))
 
     def __call__(self, x: npt.ArrayLike) -> Array:
         """Return f of each element, as a new array."""
@@ -104,6 +109,10 @@ ACTIVATIONS: dict[str, Callable[..., Activation]] = {
     "relu": ActivationFunctions.use_relu,
     "leaky_relu": ActivationFunctions.use_leaky_relu,
 }
+
+
+def _activation(function: Any, slope: Any, name: str | None, options: dict[str, float]) -> Activation:
+    return ACTIVATIONS[name](**options) if name else Activation(function, slope)
 
 
 def _floating(x: npt.ArrayLike) -> Array:

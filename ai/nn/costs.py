@@ -42,8 +42,13 @@ class Cost:
         return cls(function, derivative)
 
     def __call__(self, prediction: Array, target: Array) -> float:
-        """Return the cost of a batch."""
+        """Return the cost of a batch; raises ValueError for targets of another shape."""
         return float(self.function(prediction, target))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle a cost by its name, if it has one."""
+        given = (self.function, self.derivative, None) if self.name is None else (None, None, self.name)
+        return _cost, (*given, dict(self.options))
 
     def __iter__(self) -> Iterator[CostFunction]:
         yield self
@@ -58,11 +63,11 @@ class CostFunctions:
         """Squared error: Σ (prediction - target)², averaged over the batch."""
 
         def function(prediction: Array, target: Array) -> float:
-            difference = np.subtract(prediction, target)
+            difference = _difference(prediction, target)
             return float(np.vdot(difference, difference)) / _batch(difference)
 
         def derivative(prediction: Array, target: Array) -> Array:
-            difference: Array = np.subtract(prediction, target)
+            difference = _difference(prediction, target)
             return difference * (2 / _batch(difference))
 
         return Cost(function, derivative, "mse")
@@ -77,12 +82,12 @@ class CostFunctions:
             raise ValueError(f"delta of the Huber cost is a positive number, not {delta}")
 
         def function(prediction: Array, target: Array) -> float:
-            error = np.abs(np.subtract(prediction, target))
+            error = np.abs(_difference(prediction, target))
             curved = np.minimum(error, delta)
             return float(np.sum(curved * (error - 0.5 * curved))) / _batch(error)
 
         def derivative(prediction: Array, target: Array) -> Array:
-            error: Array = np.subtract(prediction, target).clip(-delta, delta)
+            error = _difference(prediction, target).clip(-delta, delta)
             return error / _batch(error)
 
         return Cost(function, derivative, "huber", MappingProxyType({"delta": delta}))
@@ -99,7 +104,9 @@ class CostFunctions:
         def function(prediction: Array, target: Array) -> float:
             logits = _shifted(prediction)
             logarithms = logits - np.log(np.exp(logits).sum(axis=-1, keepdims=True))
-            return -float(np.vdot(target, logarithms)) / _batch(logits)
+            # A class that is masked by -inf costs nothing unless it is the target.
+            target = np.asarray(target)
+            return -float(np.vdot(target, np.where(target == 0, 0.0, logarithms))) / _batch(logits)
 
         def derivative(prediction: Array, target: Array) -> Array:
             target = np.asarray(target)
@@ -124,6 +131,10 @@ COSTS: dict[str, Callable[..., Cost]] = {
 }
 
 
+def _cost(function: Any, derivative: Any, name: str | None, options: dict[str, float]) -> Cost:
+    return COSTS[name](**options) if name else Cost(function, derivative)
+
+
 def _shifted(logits: Array) -> Array:
     """Return logits of which the largest is 0: softmax is the same, and nothing can overflow."""
     logits = np.asarray(logits)
@@ -131,5 +142,14 @@ def _shifted(logits: Array) -> Array:
     return shifted
 
 
+def _difference(prediction: Array, target: Array) -> Array:
+    """Return prediction - target; (n,) beside (n, 1) would make n · n differences of no meaning."""
+    if np.shape(prediction) != np.shape(target):
+        raise ValueError(f"the targets have shape {np.shape(target)}, the predictions {np.shape(prediction)}")
+    difference: Array = np.subtract(prediction, target)
+    return difference
+
+
 def _batch(outputs: Array) -> int:
-    return len(outputs) if outputs.ndim > 1 else 1
+    """Return the number of examples, for a mean; that of none is 0."""
+    return max(1, len(outputs)) if outputs.ndim > 1 else 1

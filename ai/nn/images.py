@@ -109,7 +109,7 @@ class ConvolutionLayer(FullyConnectedLayer):
     def _blocks(self, batch: int) -> Iterator[tuple[slice, slice]]:
         """Yield which columns and rows of outputs are worked at together: some whole columns, or a part of one."""
         rows, columns, filters = self.outputs
-        fit = max(1, BLOCK // (batch * (len(self.weights) + filters)))
+        fit = max(1, BLOCK // max(1, batch * (len(self.weights) + filters)))
         return product(_parts(columns, fit // rows), _parts(rows, fit))
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -36,8 +36,11 @@ class NeuralNetwork:
     ) -> None:
         self.cost = Cost.of(function, derivative)
         self.layers: list[Layer] = []
+        self._takes: tuple[int, ...] = ()  # shape of an example; none as long as any will do
         self.rng = rng or np.random.default_rng(0)
         self.dtype = np.dtype(dtype)
+        if self.dtype.kind != "f":
+            raise ValueError(f"a network computes with floating-point numbers, not {self.dtype}")
 
     def add_layer(self, layer: Layer) -> Self:
         """Append a layer.
@@ -49,6 +52,8 @@ class NeuralNetwork:
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
                 before.initialise = before.initialise or layer.activation.initialise
+        if not self._takes and layer.inputs is not None:
+            self._takes = layer.inputs if isinstance(layer.inputs, tuple) else (layer.inputs,)
         self.layers.append(layer)
         self.__dict__.pop("_flat", None)  # made anew when needed
         return self
@@ -60,6 +65,9 @@ class NeuralNetwork:
 
     @values.setter
     def values(self, values: Array) -> None:
+        values = np.asarray(values)
+        if values.shape != self._flat[0].shape:
+            raise ValueError(f"the network has {self._flat[0].size:,} parameters, in one row, not {values.shape}")
         self._flat[0][...] = values
 
     @property
@@ -77,7 +85,7 @@ class NeuralNetwork:
         Inputs of a network for images are (batch, height, width, channels), or without the batch as well.
         Leaves no trace: a backward pass may still follow the last `forward_propagate`.
         """
-        data: Array = np.asarray(input_data, self.dtype)
+        data = self._input(input_data)
         if data.ndim == 3:
             one: Array = self.predict(data[None])[0]
             return one
@@ -89,6 +97,15 @@ class NeuralNetwork:
         for layer in self.layers:
             data = layer.predict(data)
         return data
+
+    def _input(self, given: npt.ArrayLike) -> Array:
+        """Return what a network is given, in its own kind of numbers; raises ValueError for what it cannot take."""
+        array = given if isinstance(given, np.ndarray) else np.asarray(given)
+        if array.dtype.kind not in "fiub":
+            raise ValueError(f"a network takes numbers, not {array.dtype} of shape {array.shape}")
+        if self._takes and array.shape != self._takes and array.shape[1:] != self._takes:
+            raise ValueError(f"the network takes {self._takes}, or a batch of such, not {array.shape}")
+        return array.astype(self.dtype, copy=False)
 
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
         """Return what each layer gives for a batch; the last is what `predict` returns."""
@@ -115,7 +132,7 @@ class NeuralNetwork:
 
         The array is kept for reuse: the next call overwrites it.
         """
-        data: Array = np.asarray(input_data, self.dtype)
+        data = self._input(input_data)
         for layer in self.layers:
             data = layer.forward_propagate(data)
         return data
@@ -176,7 +193,9 @@ class NeuralNetwork:
         with np.errstate(over="ignore", invalid="ignore"):
             cost = self.cost(prediction, target)
             self.backward_propagate(self.cost.derivative(prediction, target))
-        optimizer.step(self.values, self.gradients, cost)
+        optimizer.serve(self.values)
+        if len(target):
+            optimizer.step(self.values, self.gradients, cost)
         return cost
 
     def copy(self) -> Self:
@@ -186,6 +205,11 @@ class NeuralNetwork:
             twin.add_layer(type(layer)(**layer.arguments()))
         twin.values = self.values
         return twin
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle what `copy` copies: parameters stay views of one flat vector, and buffers are left out."""
+        layers = [(type(layer), layer.arguments()) for layer in self.layers]
+        return _restored, (type(self), self.cost, layers, self.dtype, self.values.copy())
 
     def save(self, folder: str | Path) -> None:
         """Write the network to a folder, whole or not at all (docs/adr/0004-models-are-folders.md).
@@ -203,6 +227,17 @@ class NeuralNetwork:
         for layer in layers:
             network.add_layer(layer)
         return network
+
+
+def _restored(
+    kind: type[NeuralNetwork], cost: Cost, layers: list[tuple[type[Layer], dict[str, Any]]], dtype: Any, values: Array
+) -> NeuralNetwork:
+    """Make a copied or pickled network."""
+    network = kind(cost, dtype=dtype)
+    for layer, arguments in layers:
+        network.add_layer(layer(**arguments))
+    network.values = values
+    return network
 
 
 def _batches(

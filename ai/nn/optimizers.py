@@ -40,11 +40,18 @@ class Optimizer(ABC):
     never_negative: tuple[str, ...] = ()  # which of these no step can bring below 0
 
     def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
+        if isinstance(learning_rate, bool) or not isinstance(learning_rate, int | float | np.number):
+            raise ValueError(f"a learning rate is a number, not {learning_rate!r}")
         self.learning_rate = learning_rate
         self.clip = clip
         self.steps = 0
         self.memory: dict[str, Array] = {}
         self.scratch: Array = np.empty(0)
+        self._moved: Array | None = None  # the parameters of the network that it serves
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Copy and pickle all but whose parameters they are: a copy moves those of a copied network."""
+        return vars(self) | {"_moved": None}
 
     def step(self, values: Array, gradients: Array, cost: float = 0.0) -> float:
         """Move `values`, in place, and return the length of `gradients` as they came.
@@ -72,6 +79,13 @@ class Optimizer(ABC):
         self.steps += 1
         return length
 
+    def serve(self, values: Array) -> None:
+        """Take note of the network's parameters that are to be moved; raises ValueError if others were before."""
+        if self.remembers and self._moved is not values:
+            if self._moved is not None and self.steps:
+                raise ValueError("an optimizer remembers one network's gradients; another network needs its own")
+            self._moved = values
+
     def state(self) -> dict[str, npt.NDArray[Any]]:
         """Return copies of all that the next step depends on, besides the settings."""
         return {"steps": np.array(self.steps)} | {name: kept.copy() for name, kept in self.memory.items()}
@@ -92,7 +106,7 @@ class Optimizer(ABC):
         for name in self.never_negative:
             if name in memory and (memory[name] < 0).any():
                 raise ValueError(f"{name} holds numbers below 0, and is a sum of squares")
-        self.steps, self.memory, self.scratch = int(steps), memory, np.empty(0)
+        self.steps, self.memory, self.scratch, self._moved = int(steps), memory, np.empty(0), None
 
     @abstractmethod
     def _fill_step(self, gradients: Array, number: int) -> None:

@@ -30,10 +30,12 @@ class GymLander(gymnasium.Env[Floats, np.int64]):
     metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own declaration
 
     def __init__(self, spawn: str = "random", frame_skip: int = 4, render_mode: None = None) -> None:
+        if render_mode is not None:
+            raise ValueError(f"nothing is shown here, so render_mode is None, not {render_mode!r}")
+        self.landers = LanderEnv(1, 0, spawn, frame_skip)
         self.render_mode = render_mode
         self.metadata = GymLander.metadata | {"render_fps": round(1 / (DT * frame_skip))}
         self.observation_space, self.action_space = Box(_LOW, _HIGH), Discrete(NUM_ACTIONS)
-        self.landers = LanderEnv(1, 0, spawn, frame_skip)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin a flight; the same seed gives the same flights."""

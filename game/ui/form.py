@@ -360,7 +360,8 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
     forward = [index for index in others if ahead(boxes[index]) > 0]
     if direction[0]:
         row = [index for index in forward if level(boxes[index])]
-        forward = row or [index for index in forward if beyond(boxes[index])]
+        apart = [index for index in forward if beyond(boxes[index])]  # one below the fold may lie under this one
+        forward = [index for index in row if index in apart] or row or apart
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
     if direction[1] and in_order:

@@ -17,8 +17,7 @@ from game.world.camera import View
 
 CLEAR: Final = 0.35  # height that is seen above the ground, as a share of the room's width
 BELOW: Final = 0.05  # and below it
-_WALL: Final = 4.0
-_WALL_HEIGHT: Final = 200.0
+_WALL: Final = 12.0  # metres; in a step nothing moves so far that it would be pressed out on the other side
 _FIXED, _BOXES, _DISCS = range(3)  # layers
 # Of a grip: its spring's rad/s, its damping, 1 being critical, and its greatest m/s²: a hand throws, it tears nothing.
 _PACE, _DAMPING, _STRONGEST = 12.0, 0.8, 150.0
@@ -98,11 +97,11 @@ class Quantity:
 
 
 class Exhibit:
-    """One law of the engine, in a room of its own: a floor at y = 0, and walls at the edges of the view.
+    """One law of the engine, in a room of its own: a floor at y = 0, walls and a ceiling at the edges of the view.
 
     Attributes:
         name: its name in `texts.EXHIBITS`.
-        width: width of the room, in metres.
+        width, height: of the room, in metres.
         values: the quantities, by name.
         sprites: all that is drawn, by the image keys of `game.scenes.physics.bodies`.
         bodies: the movable bodies.
@@ -123,10 +122,13 @@ class Exhibit:
         self.bodies: list[Body] = []
         self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
         self.steps = 0
-        side = self.width / 2 + _WALL / 2
-        self.floor = self.world.add(Polygon.box(2 * self.width, _WALL), (0.0, -_WALL / 2), static=True)
+        self.height = CLEAR * self.width
+        # All four reach past the corners, where the nearest way out would else lead along one of them.
+        side, plate = (self.width + _WALL) / 2, Polygon.box(self.width + 2 * _WALL, _WALL)
+        self.floor = self.world.add(plate, (0.0, -_WALL / 2), static=True)
         for x in (-side, side):
-            self.world.add(Polygon.box(_WALL, _WALL_HEIGHT), (x, _WALL_HEIGHT / 2), static=True)
+            self.world.add(Polygon.box(_WALL, self.height + 2 * _WALL), (x, self.height / 2), static=True)
+        self.world.add(plate, (0.0, self.height + _WALL / 2), static=True, friction=0.0)
         self.build()
         self.touched = np.zeros(self.world.state.pose.shape[1], dtype=bool)
 
@@ -155,8 +157,9 @@ class Exhibit:
     # What they share
 
     def step(self, grip: Grip | None = None) -> None:
-        """Advance by 1/60 s, during which a grip may pull at a body."""
+        """Advance by 1/60 s, during which a grip may pull at a body, towards a place within the room."""
         if grip:
+            grip.target = np.clip(grip.target, (-self.width / 2, 0.0), (self.width / 2, self.height))
             grip.pull()
             self.touched[grip.body.index] = True
         self.world.step()

@@ -72,7 +72,7 @@ class Heap(Exhibit):
 
     name = "heap"
     quantities = (Quantity("count", (10.0, 100.0), 100.0, 5.0), Quantity("rubbing", (0.1, 1.0), 0.5, 0.1))
-    columns = 14
+    columns = 15
 
     def build(self) -> None:
         self.world.iterations = 6  # enough to come to rest: no load passes through more than a few bodies

@@ -102,3 +102,10 @@ def test_sites_of_every_kind_can_be_flown(subtests):
                 result = env.step(ScriptedPilot().act(env.observe_for(None)))
             assert np.isfinite(result.observation).all()
             assert (env.outcome == Outcome.LANDED).any()
+
+
+def test_gravity_can_be_read_and_is_the_first_landers():
+    for slots in (1, 3):
+        env = AnywhereEnv(slots, 0)
+        env.reset()
+        assert env.gravity == -env.world.gravity[0, 1] > 0

@@ -256,3 +256,9 @@ def test_the_nearest_action_is_its_own_at_full_and_never_nothing_for_something()
     full = [(main, side, action) for action, (main, side) in enumerate(ACTION_SHARES.tolist())]
     for main, side, action in (*full, *some):
         assert nearest_action(main, side) == action
+
+
+@pytest.mark.parametrize("given", [{"frame_skip": 1.5}, {"frame_skip": True}, {"num_envs": 2.0}, {"num_envs": 0}])
+def test_numbers_of_landers_and_steps_are_whole(given):
+    with pytest.raises(ValueError, match=f"{next(iter(given))} is a whole number from 1 on"):
+        LanderEnv(**given)

@@ -8,6 +8,7 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.nn import ModelFormatError
 from ai.training.config import gym_config
+from ai.training.gym_lander import GymLander
 from ai.training.gym_task import PATIENCE, GymTask
 from ai.training.loop import Training
 from ai.training.run import resume
@@ -169,3 +170,8 @@ def test_lunar_lander_looks_the_same_in_a_mirror():
         assert mirror.mirrored(one[0]) == pytest.approx(other[0], abs=0.01)
         assert one[1] == pytest.approx(other[1], abs=0.05)
     assert abs(one[0][4]) > 0.1, "it has turned: the test is not of a lander that falls straight"
+
+
+def test_a_way_of_showing_that_there_is_not_is_refused():
+    with pytest.raises(ValueError, match="render_mode is None, not 'human'"):
+        GymLander(render_mode="human")

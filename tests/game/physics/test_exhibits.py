@@ -82,6 +82,25 @@ def test_every_exhibit_keeps_within_its_room_and_says_each_of_its_sentences(name
     assert states == set(texts.EXHIBITS[name][2])
 
 
+@pytest.mark.parametrize("name", EXHIBITS)
+def test_nothing_that_a_hand_throws_or_drags_leaves_the_room(name: str):
+    rng = np.random.default_rng(2)
+    shown: Any = EXHIBITS[name](MOON, FEW if name == "heap" else {})
+    far = [(-90.0, 3.0), (90.0, 90.0), (0.0, 300.0), (3.0, -80.0), (-90.0, -90.0), (90.0, 0.5)]
+    for number, target in enumerate(far * 2):
+        body = shown.bodies[(5 * number) % len(shown.bodies)]
+        grip = Grip(body, body.position[0] + rng.uniform(-0.1, 0.1, 2))
+        grip.target = np.array(target)
+        for _ in range(rng.integers(8, 60)):
+            shown.step(grip)
+        for _ in range(20):
+            shown.step()
+        place = shown.world.state.pose[0, [each.index for each in shown.bodies], :2]
+        assert (np.abs(place[:, 0]) < shown.width / 2).all(), target
+        assert (place[:, 1] > 0).all(), target
+        assert (place[:, 1] < shown.height).all(), target
+
+
 def test_every_quantity_has_words_and_begins_at_a_value_that_can_be_chosen():
     assert texts.EXHIBITS.keys() == EXHIBITS.keys()
     assert texts.QUANTITIES.keys() == {each.name for kind in EXHIBITS.values() for each in kind.quantities}
