@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Final, Protocol
@@ -288,13 +288,24 @@ class CoPilot:
         return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(known), held
 
     def _void(self, env: LanderEnv) -> None:
-        """Drop all plans of another environment, or of one whose rules have changed since."""
-        rules = env.params, env.limits, env.conditions, env.ground
+        """Drop the plans of slots whose rules have changed since, and all where the ground or their number has."""
+        rules = env.params, env.limits, env.conditions, env.num_envs, env.ground
         if len(rules) != len(self._rules) or any(a is not b for a, b in zip(rules, self._rules, strict=True)):
-            for guardian in self.guardians:
-                guardian.plan = None
+            changed = np.ones(env.num_envs, dtype=bool)
+            if self._rules[3:] and self._rules[3] == env.num_envs and self._rules[4] is env.ground:
+                changed = (_numbers(self._rules[:3], env.num_envs) != _numbers(rules[:3], env.num_envs)).any(axis=0)
+            for slot, guardian in enumerate(self.guardians):
+                if slot >= env.num_envs or changed[slot]:
+                    guardian.plan = None
         self._rules = rules
         self.guardians += [Guardian() for _ in range(env.num_envs - len(self.guardians))]
+
+
+def _numbers(rules: Sequence[Any], slots: int) -> Doubles:
+    """Return the numbers of rules that each slot flies by, (k, slots): they may be one for all, or one for each."""
+    values = [getattr(rule, each.name) for rule in rules for each in fields(rule)]
+    numbers = [part for value in values for part in (value if isinstance(value, tuple) else (value,))]
+    return np.stack([np.broadcast_to(number, slots) for number in numbers])
 
 
 def _checked(observation: Floats, pilot: Any, shares: Doubles | None) -> tuple[Floats, Ints, Doubles]:

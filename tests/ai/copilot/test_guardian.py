@@ -10,6 +10,7 @@ from ai.agent.agent import DeepQAgent
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.futures import KEYS, Future, Here, Lookahead, Plan, Push
 from ai.copilot.guardian import Guardian, decisions_of
+from ai.lander.anywhere import AnywhereEnv, Site
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from game.core.assets import MODELS_DIR
@@ -206,6 +207,18 @@ def test_a_plan_is_void_under_other_rules(agent):
         assert not decision.held[0]
         assert decision.action[0] == 1
         assert np.all(copilot.decide(env.observe(), [1], env=env).held)
+
+
+def test_the_plan_of_a_lander_outlives_another_site_of_another_lander():
+    env = AnywhereEnv(2, 0, sites=["moon"])
+    env.reset()
+    copilot = CoPilot(DeepQAgent(env.num_features, 6), GUARD, Mode.GUARDIAN)
+    copilot.foresee(env, [MAIN, MAIN])
+    for guardian, here in zip(copilot.guardians, Here.all(env), strict=True):
+        guardian.plan = replace(plan(MAIN), states=np.tile(here.state, (2, 1)))
+    env.set_sites([Site(thrust=5.0), Site()])
+    copilot.foresee(env, [MAIN, MAIN])
+    assert [guardian.plan is None for guardian in copilot.guardians] == [True, False]
 
 
 def test_late_answers_do_not_touch_the_plan_and_forgetting_a_slot_drops_it(agent):
