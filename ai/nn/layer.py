@@ -7,12 +7,15 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.nn.parameter import Array, Initialise, Parameter
+
+if TYPE_CHECKING:
+    from ai.nn.network import NeuralNetwork
 
 ImageShape = tuple[int, int, int]  # height, width, channels
 
@@ -43,13 +46,23 @@ class Layer(ABC):
     initialise: Initialise | None = None  # how weights are drawn: as suits the activation that follows, if any does
     rng: np.random.Generator | None = None
     dtype: npt.DTypeLike = np.float32
-    joined = False  # whether it belongs to a network
+    network: "NeuralNetwork | None" = None  # that it is part of
     output: Array  # of the last forward pass, and the input error of the last way back, in layers that keep them
     error: Array
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Learned parameters, drawn when first asked for: by then the layer's network and neighbours are known."""
+        """Learned parameters; in a network, views of its flat vector from the first time that they are asked for."""
+        drawn = self.drawn
+        self.gather()
+        return drawn
+
+    @cached_property
+    def drawn(self) -> tuple[Parameter, ...]:
+        """The same, drawn when first asked for, when network and neighbours are known, and not gathered into a vector.
+
+        Another layer that joins the network makes another vector; `parameters` are the way to those in use.
+        """
         values = {name: np.asarray(self.initial_value(name), self.dtype) for name in self.shapes}
         for name, value in values.items():
             if value.shape != tuple(self.shapes[name]):
@@ -60,16 +73,22 @@ class Layer(ABC):
         """Return the first value of a parameter, of the shape that `shapes` names; draw it from `rng`."""
         raise NotImplementedError(f"{type(self).__name__} does not say how {name} begins")
 
-    def join(self, rng: np.random.Generator, dtype: npt.DTypeLike) -> None:
-        """Become a part of one network, which computes in `dtype`; the layer gets a generator of its own.
+    def gather(self) -> None:
+        """Let the network that this is part of, if any, make one flat vector of all its parameters."""
+        if self.network is not None:
+            _ = self.network.values
+
+    def join(self, network: "NeuralNetwork") -> None:
+        """Become a part of one network; the layer gets a generator of its own.
 
         Raises ValueError if it is part of one already: a network's parameters lie in its own flat vector.
         """
-        if self.joined:
+        if self.network is not None:
             raise ValueError(f"this {type(self).__name__} belongs to a network already; make another, or copy that one")
-        self.joined, self.rng, self.dtype = True, self.rng or rng.spawn(1)[0], np.dtype(dtype)
-        for parameter in vars(self).get("parameters", ()):  # drawn before, perhaps in another precision
-            parameter.value, parameter.gradient = parameter.value.astype(dtype), parameter.gradient.astype(dtype)
+        self.network, self.rng, self.dtype = network, self.rng or network.rng.spawn(1)[0], network.dtype
+        for parameter in vars(self).get("drawn", ()):  # before, perhaps in another precision
+            parameter.value = parameter.value.astype(self.dtype)
+            parameter.gradient = parameter.gradient.astype(self.dtype)
 
     def arguments(self) -> dict[str, Any]:
         """Return what the constructor needs to make such a layer again."""

@@ -48,7 +48,7 @@ class NeuralNetwork:
         Raises ValueError if it does not fit the one before, belongs to a network already, or makes this one too large.
         """
         check_next(self.layers, layer)
-        layer.join(self.rng, self.dtype)
+        layer.join(self)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
                 before.initialise = before.initialise or layer.activation.initialise
@@ -56,6 +56,8 @@ class NeuralNetwork:
             self._takes = layer.inputs if isinstance(layer.inputs, tuple) else (layer.inputs,)
         self.layers.append(layer)
         self.__dict__.pop("_flat", None)  # made anew when needed
+        for each in self.layers:
+            each.__dict__.pop("parameters", None)
         return self
 
     @property
@@ -77,7 +79,7 @@ class NeuralNetwork:
 
     @cached_property
     def _flat(self) -> tuple[Array, Array]:
-        return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
+        return pack((parameter for layer in self.layers for parameter in layer.drawn), self.dtype)
 
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.

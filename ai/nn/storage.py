@@ -83,7 +83,7 @@ def save_network(folder: str | Path, cost: Cost, layers: list[Layer], dtype: npt
             "cost": _described(cost),
             "layers": [_write_layer(temporary, index, layer) for index, layer in enumerate(layers)],
         }
-        (temporary / CONFIG).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
+        (temporary / CONFIG).write_text(json.dumps(config, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _write_layer(folder: Path, index: int, layer: Layer) -> dict[str, Any]:
@@ -142,7 +142,7 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
             with noted(problems, f"{CONFIG}: layer {index}"):
                 array = _read_array(folder, descriptions[index], name, shape, str(dtype))
                 parameters.append(Parameter(name, array, np.zeros_like(array)))
-        layer.parameters = tuple(parameters)
+        layer.drawn = tuple(parameters)
     if problems:
         raise ModelFormatError(folder, problems)
     return cost, list(layers.values()), str(dtype)
