@@ -192,9 +192,19 @@ def _checked(target: str | Path, kind: FolderKind) -> Path:
         return path
     if not path.is_dir():
         raise FileExistsError(f"{path} is something else than a folder, and is left as it is")
+    if _in_use(path):
+        raise FileExistsError(f"{path} is the folder that this program works in, and cannot be replaced: give another")
     if any(path.iterdir()) and (foreign := kind.foreign(path)):
         raise FileExistsError(f"{path} holds something else than a {kind.format} ({foreign}), and is left as it is")
     return path
+
+
+def _in_use(path: Path) -> bool:
+    """Whether the working directory is a folder or lies in it: replaced, it would be gone under the process."""
+    try:
+        return Path.cwd().is_relative_to(path)
+    except OSError:  # it is gone already
+        return False
 
 
 def _put(new: Path, target: Path, kind: FolderKind | None) -> None:
