@@ -50,5 +50,6 @@ class OneEngineEnv(LanderEnv):
         return np.ascontiguousarray(super().observe(pad, wide=wide)[:, _SENSED])
 
     def step(self, actions: Any) -> StepResult:
-        """Fly one decision in every slot that has not ended."""
-        return super().step(_MAIN * actions)
+        """Fly one decision in every slot that has not ended; raises as the lander's does, and truths are no actions."""
+        actions = np.asarray(actions)
+        return super().step(actions if actions.dtype.kind == "b" else _MAIN * actions)

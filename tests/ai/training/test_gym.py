@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
+from ai.lander.anywhere import AnywhereEnv
+from ai.lander.environment import LanderEnv
+from ai.lander.one_engine import OneEngineEnv
 from ai.nn import ModelFormatError
 from ai.training.config import gym_config
 from ai.training.gym_lander import GymLander
@@ -175,3 +178,12 @@ def test_lunar_lander_looks_the_same_in_a_mirror():
 def test_a_way_of_showing_that_there_is_not_is_refused():
     with pytest.raises(ValueError, match="render_mode is None, not 'human'"):
         GymLander(render_mode="human")
+
+
+def test_true_is_an_action_in_none_of_our_environments():
+    one_engine = OneEngineEnv(1, np.random.default_rng(0), (1.0, 2.0))
+    for env in (LanderEnv(1, 0), AnywhereEnv(1, 0), one_engine, GymLander()):
+        env.reset()
+        with pytest.raises(ValueError, match="whole numbers, not bool"):
+            env.step(True if isinstance(env, GymLander) else [True])
+    assert one_engine.step([1]).reward.shape == (1,)
