@@ -75,7 +75,8 @@ class DigitClassifier:
     def write(self, folder: Path, **described: Any) -> None:
         """Write the classifier's files into a new folder; `save` does so safely."""
         self.network.save(folder / NETWORK)
-        text = json.dumps({"format": FORMAT, "version": VERSION, "inputs": "0 to 1, ink bright", **described}, indent=2)
+        said = {"format": FORMAT, "version": VERSION, "inputs": "0 to 1, ink bright", **described}
+        text = json.dumps(said, indent=2, allow_nan=False)
         (folder / DIGITS_FILE).write_text(text + "\n", encoding="utf-8")
 
     @classmethod

@@ -148,7 +148,7 @@ class Study:
 
     def _write(self) -> None:
         saved = {"format": FORMAT, "version": VERSION, "plan": asdict(self.plan)}
-        write_text(self.folder / STUDY_FILE, json.dumps(saved, indent=2) + "\n")
+        write_text(self.folder / STUDY_FILE, json.dumps(saved, indent=2, allow_nan=False) + "\n")
 
     def record(self, trial: Trial, runs: Files) -> None:
         """Keep a finished trial and the files of its runs, whole or not at all; raises OSError."""

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ai.agent import DeepQAgent
+from ai.digits import DigitClassifier
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -22,6 +24,7 @@ from ai.nn import (
     NeuralNetwork,
 )
 from ai.nn.storage import LAYERS
+from game.core.assets import MODELS_DIR
 
 X = np.random.default_rng(0).normal(size=(7, 3))
 
@@ -268,3 +271,23 @@ def test_somebodys_files_are_never_replaced(tmp_path):
     with pytest.raises(FileExistsError, match="something else"):
         every_layer().save(tmp_path / "thesis.txt")
     assert (tmp_path / "thesis.txt").read_text() == "three years"
+
+
+def test_the_folder_that_the_program_works_in_stays_under_it(saved, monkeypatch):
+    classifier = DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+    monkeypatch.chdir(saved)
+    for save in (every_layer().save, DeepQAgent(3, 2).save, classifier.save):
+        with pytest.raises(FileExistsError, match="works in"):
+            save(".")
+    NeuralNetwork.load(".").save("../other")
+    assert (saved / "config.json").samefile("config.json")
+
+
+def test_nothing_is_written_that_json_cannot_say(tmp_path):
+    network = every_layer()
+    network.layers[1].epsilon = float("nan")
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        network.save(tmp_path / "network")
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        DigitClassifier.load(MODELS_DIR / "digits" / "classic").save(tmp_path / "digits", accuracy=float("nan"))
+    assert not [*tmp_path.iterdir()]
