@@ -29,6 +29,7 @@ _JUMP: Final = 4.0  # metres: farther than any lander flies between two snapshot
 _LABEL: Final = (3.2, 1.6)  # metres that a lander's label takes; of landers closer than that, only the best is labelled
 _REACH: Final = 16.0  # points from a lander within which a click is meant for it
 _MOON: Final = 5
+_SMALLEST: Final = 64  # pixels of its picture, each way
 _BELOW: Final = 0.077  # share of the world's height that lies below its box: nothing but ground
 _EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figures
 
@@ -115,7 +116,8 @@ class LearningSwarm:
         area = canvas.rect(*self.box)
         canvas.surface.set_clip(area)
         below = round(_BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale)
-        canvas.surface.blit(_moon((area.width, area.height + below)).picture, area)
+        size = max(_SMALLEST, area.width), max(_SMALLEST, area.height + below)  # a tiny window shows a part of it
+        canvas.surface.blit(_moon(size).picture, area)
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:
             canvas.surface.set_clip(None)

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Environments as other people write them: endless, crashing, in odd units; registered as odd/NAME-v0."""
 
 import gymnasium

@@ -311,8 +311,8 @@ def test_a_signal_in_the_midst_of_a_validation_ends_a_run_that_is_kept(tmp_path,
         "T.test_episodes = 2; from main import main; sys.exit(main(sys.argv[1:]))"
     )
     command = ["train", "--env", name("Endless"), "--decisions", "100000", "--output", str(tmp_path / "run")]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    child = subprocess.Popen([sys.executable, "-c", code, *command], cwd=ROOT, **quiet)
+    run = [sys.executable, "-c", code, *command]
+    child = subprocess.Popen(run, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     threading.Timer(8.0, lambda: child.send_signal(number)).start()
     threading.Timer(10.0, lambda: child.send_signal(number)).start()  # and the measurement that follows
     began = time.monotonic()

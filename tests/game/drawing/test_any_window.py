@@ -15,6 +15,7 @@ from game.core import texts
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.scenes.menus.settings import SettingsScene
+from game.scenes.watch.watched import MANY
 from game.ui.context import Context
 from game.world.camera import LAND_REACH, WIDEST, Camera, CameraTarget
 from game.world.landscape.backdrop import Backdrop
@@ -72,10 +73,10 @@ def test_sky_and_land_fill_the_window_wherever_the_camera_goes(size: tuple[int, 
 def test_a_choice_at_the_foot_and_a_hint_at_the_head_are_pressed_where_they_are_seen(open_game, context, written):
     save_settings(context)
     driver = opened(open_game, "WatchScene")
-    for size, count in zip(SHAPES, (16, 64, 1), strict=True):
+    for size, count in zip(SHAPES, (MANY, 1, MANY), strict=True):
         reshape(driver, size)
         seen = boxes(written, driver)
-        driver.click(seen[str(count)].center)
+        driver.click(seen[texts.WATCH_MANY[count == MANY]].center)
         assert driver.top.swarm.env.num_envs == count, size
         driver.click(seen["pause"].center)
         assert "PauseScene" in driver.top_name, size

@@ -143,9 +143,9 @@ def drawing_changes_nothing_but_pixels(visit: Visit) -> None:
 # Hints and actions
 
 NEW: dict[Command | Held, int]
-NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
-       Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
-       Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
+NEW = {Command.HANDOVER: pygame.K_y, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
+       Command.NEXT: pygame.K_h, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
+       Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_x, Held.RIGHT: pygame.K_v}  # fmt: skip
 
 
 def keys_named(driver: Driver) -> Counter[str]:

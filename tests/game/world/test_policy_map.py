@@ -64,6 +64,7 @@ def test_a_cell_is_the_decision_of_a_lander_that_is_really_there(env: LanderEnv,
         if decided.points is None:
             assert decided.action[0] == cells.decision.action[number]
         else:
+            assert cells.decision.points is not None
             values = np.sort(decided.points[0])
             if values[-1] - values[-2] > 1e-3:  # else a batch may round the other way
                 assert decided.action[0] == cells.decision.action[number]
