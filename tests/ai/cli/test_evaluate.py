@@ -2,17 +2,8 @@
 
 import json
 
-import pytest
-
-from ai.training.statistics import wilson
 from game.core.assets import MODELS_DIR
 from main import main
-
-
-def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
-    assert wilson(0.0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
-    assert wilson(1.0, 20) == pytest.approx((0.8389, 1.0), abs=1e-4)
-    assert wilson(0.5, 100) == pytest.approx((0.4038, 0.5962), abs=1e-4)
 
 
 def test_evaluate_prints_an_interval_around_the_share(capsys):

@@ -56,6 +56,14 @@ def test_only_what_neither_moves_nor_leans_nor_turns_is_at_rest():
     assert not env.still_steps.any(), "it is counted anew after a hop"
 
 
+def test_one_that_slides_over_the_pad_rests_once_it_is_slower_than_the_limit():
+    env = placed((-1, STAND, 0.68), limits=replace(LIMITS, rest_steps=1))
+    fly(env)
+    assert env.outcome[0] == Outcome.LANDED
+    assert env.steps[0] > 5
+    assert 0.3 < np.hypot(*env.velocity[0]) < LIMITS.rest_speed
+
+
 def test_each_way_to_crash_is_named_by_the_limit_that_was_broken(subtests):
     for start, cause, limits in [
         ((0, STAND + 0.02, 0, -2.3), Cause.HARD, LIMITS),

@@ -45,6 +45,7 @@ def test_each_part_pays_what_it_says(subtests):
     for name, before, after, paid in [
         ("tilt", {}, {"tilted_steps": 3}, -0.15),
         ("feet", {"feet_steps": 27}, {"feet_steps": 31}, 3.0),  # thirty steps are paid
+        ("feet", {"feet_steps": 33}, {"feet_steps": 36}, 0.0),
         ("engine", {"actions": 0}, {"steps": 14, "actions": 4}, -0.08),
         ("engine", {"actions": 4}, {"steps": 14, "actions": 0}, 0.0),
         ("switch", {"actions": 3}, {"actions": 4}, -0.5),

@@ -11,6 +11,7 @@ from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training, run
 from ai.training.run import Limit, save
+from ai.training.statistics import wilson
 from ai.training.tasks import Evaluation, LanderTask, evaluate
 
 SMALL = PRESETS["modern"].changed(
@@ -173,3 +174,9 @@ def test_sums_of_flights_give_their_means():
     sums = np.array([0, 2, 2, 0, 0, 4.0, 14.0, 6.0, 10, 20.0])
     assert Evaluation.of(sums) == Evaluation(4, 0.5, 0.5, 0.0, 0.0, 1.0, 7.0, 3.0, 0.5)
     assert Evaluation.of(np.array([0, 0, 2, 0, 0, 0.0, 0.0, 0.0, 1, 2.0])).mean_time is None
+
+
+def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
+    assert wilson(0.0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
+    assert wilson(1.0, 20) == pytest.approx((0.8389, 1.0), abs=1e-4)
+    assert wilson(0.5, 100) == pytest.approx((0.4038, 0.5962), abs=1e-4)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
+from ai.environment import Floats, Ints
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, PARAMS, Cause, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
@@ -12,7 +13,7 @@ from game.flight import networks
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.forecast import Forecast, coast_path
 from game.flight.logbook import describe
-from game.flight.outcomes import outcome_card
+from game.flight.outcomes import outcome_card, qualities
 from game.flight.swarm import Swarm
 from game.scenes.logbook.scene import entry_row
 from tests.support.landers import STAND, put
@@ -139,6 +140,27 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
     flight.env.steps[:] = round(LIMITS.time * 60) - 1
     flight.step(0)
     assert outcome_card(flight.env, 1.0).reason.startswith("Time ran out")
+
+
+def test_a_landing_is_centred_within_two_fifths_of_the_way_to_the_edge_of_the_pad():
+    for across, centred in ((1.1, True), (1.4, False)):
+        assert ("centred" in qualities(fallen(across, STAND + 0.02).env)) is centred
+
+
+def test_a_new_flight_of_a_swarm_holds_no_action_of_the_last_one():
+    class Pushing:
+        def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+            self.held = held
+            return np.full(len(observation), 3)
+
+    swarm = Swarm(1, 3, pilot := Pushing())
+    for _ in range(3000):
+        swarm.step()
+        if swarm.fresh[0] and swarm.landed + swarm.lost:
+            break
+    assert swarm.fresh[0]
+    assert swarm.decision.action[0] == 3
+    assert pilot.held == [0]
 
 
 def test_what_is_just_over_a_limit_does_not_read_as_the_limit():
