@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import cached_property
@@ -116,6 +117,8 @@ class CoPilot:
         self.lookahead = Lookahead(agent, route)  # type: ignore[arg-type]  # futures ask for a pilot; values do not
         self.guardians: list[Guardian] = []
         self._rules: tuple[object, ...] = ()  # of the environment that the plans are for
+        self._moment: tuple[object, ...] = ()  # of the last decision, and what was remembered before it
+        self._before: tuple[Doubles, list[Guardian]] | None = None
 
     @property
     def assist(self) -> float:
@@ -130,6 +133,7 @@ class CoPilot:
 
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
+        self._moment = ()
         self._intent.forget(mask)
         for slot, guardian in enumerate(self.guardians):
             if mask is None or mask[slot]:
@@ -137,7 +141,7 @@ class CoPilot:
 
     def hold_plans_of(self, other: CoPilot) -> None:
         """Go on with the plans of another: one that lands does so whichever network it was found with."""
-        self.guardians, self._rules = other.guardians, other._rules
+        self.guardians, self._rules, self._moment = other.guardians, other._rules, ()
 
     # Decisions
 
@@ -176,10 +180,12 @@ class CoPilot:
 
         Here, what is corrected keeps the pilot's share of thrust, unless it is to be `whole`, so fly
         `SharedDecision.shares`. What is `known` (n) was flown beforehand: then no future is flown now, and what is
-        missing counts as lost.
+        missing counts as lost. Asked again before `env` has flown on, it decides as if it had not been asked before.
         """
         observation, pilot, pushed = _checked(observation, pilot_action, shares)
         slots, pads, _ = observation.shape
+        if env is not None:
+            self._rewind(env)
         seen = self._seen(observation, surroundings)
         values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
@@ -286,6 +292,17 @@ class CoPilot:
         shares = np.array([choice.push[1:] for choice in choices])
         held = np.array([choice.held for choice in choices])
         return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(known), held
+
+    def _rewind(self, env: LanderEnv) -> None:
+        """Remember what was known before the decision at this moment, or go back to it where that was made already."""
+        self._void(env)
+        moment = env, *Here.all(env)
+        if moment != self._moment or self._before is None:
+            self._moment, self._before = moment, (self._intent.chances, [copy(each) for each in self.guardians])
+            return
+        self._intent.chances, guardians = self._before
+        for guardian, before in zip(self.guardians, guardians, strict=True):
+            vars(guardian).update(vars(before))
 
     def _void(self, env: LanderEnv) -> None:
         """Drop the plans of slots whose rules have changed since, and all where the ground or their number has."""

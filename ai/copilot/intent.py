@@ -20,17 +20,21 @@ class Intent:
 
     A pilot who heads for a pad is modelled to choose actions by their value on the way there (Boltzmann). Hands
     off the stick are no evidence.
+
+    Attributes:
+        chances: what they are so far, (n, pads); replaced, never changed.
+
     """
 
     def __init__(self, reward_scale: float) -> None:
         self.reward_scale = reward_scale
-        self._likely: Doubles = np.ones((0, 0))
+        self.chances: Doubles = np.ones((0, 0))
 
     def likely(self, slots: int, pads: int) -> Doubles:
         """Return the chances so far, (n, pads)."""
-        if self._likely.shape != (slots, pads):
-            self._likely = np.full((slots, pads), 1.0 / pads)
-        return self._likely
+        if self.chances.shape != (slots, pads):
+            self.chances = np.full((slots, pads), 1.0 / pads)
+        return self.chances
 
     def watch(self, values: Floats, pilot: Ints) -> Doubles:
         """Update by one action (n,), given `values` (n, pads, 6) on the way to each pad; return chances (n, pads)."""
@@ -42,13 +46,14 @@ class Intent:
         likely = self.likely(slots, pads) ** _MEMORY * likelihood
         likely /= likely.sum(axis=1, keepdims=True)
         says = (pilot != COAST) & np.isfinite(likely).all(axis=1)
-        self._likely = np.where(says[:, None], likely, self._likely)
-        return self._likely
+        self.chances = np.where(says[:, None], likely, self.chances)
+        return self.chances
 
     def forget(self, mask: Bools | None = None) -> None:
         """Begin anew in the slots of `mask` (n,), or in all: all pads are equally likely."""
-        if self._likely.size:
-            self._likely[slice(None) if mask is None else mask] = 1.0 / self._likely.shape[1]
+        if self.chances.size:
+            self.chances = self.chances.copy()
+            self.chances[slice(None) if mask is None else mask] = 1.0 / self.chances.shape[1]
 
 
 def in_question(likely: Doubles) -> Bools:

@@ -221,6 +221,18 @@ def test_the_plan_of_a_lander_outlives_another_site_of_another_lander():
     assert [guardian.plan is None for guardian in copilot.guardians] == [True, False]
 
 
+def test_asked_again_at_the_same_moment_it_answers_as_if_for_the_first_time(agent):
+    env, copilot = flights(2), CoPilot(agent, GUARD, Mode.GUARDIAN)
+    asked = np.array([3, 1])
+    for _ in range(3):
+        first = copilot.decide(env.observe(), asked, env=env)
+        copilot.decide(env.observe(), np.array([2, 4]), env=env)
+        again = copilot.decide(env.observe(), asked, env=env)
+        for name in ("action", "shares", "source", "feasible", "held", "likely"):
+            np.testing.assert_array_equal(getattr(again, name), getattr(first, name))
+        env.fly(again.action, again.shares)
+
+
 def test_late_answers_do_not_touch_the_plan_and_forgetting_a_slot_drops_it(agent):
     env, copilot = flights(2), CoPilot(agent, GUARD, Mode.GUARDIAN)
     known = None
