@@ -20,7 +20,7 @@ UNITS = {"m", "s", "ms", "min", "k", "M"}
 KEY = re.compile(r"[A-Z]|F\d+")
 # Names of languages, of networks, of errors in Python, and of what the tests ask in their own dialogs.
 NAMES = {"English", "modern", "classic", "anywhere", "mine", "ValueError", "a", "b", "yes", "no", "name"}
-FOLDERS = {"ai", "engine"}  # of our own code, whose lines some screens show
+FOLDERS = {"ai", "engine", "examples"}  # of our own code, whose lines some screens show
 PATH = re.compile(r"/\S*")
 TINY = re.compile(r"\d+e[-−]\d+")  # a number: 5e-05
 
