@@ -116,8 +116,8 @@ class LearningSwarm:
         area = canvas.rect(*self.box)
         canvas.surface.set_clip(area)
         below = round(_BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale)
-        size = max(_SMALLEST, area.width), max(_SMALLEST, area.height + below)  # a tiny window shows a part of it
-        canvas.surface.blit(_moon(size).picture, area)
+        pixels = max(_SMALLEST, area.width), max(_SMALLEST, area.height + below)  # a tiny window shows a part of it
+        canvas.surface.blit(_moon(pixels).picture, area)
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:
             canvas.surface.set_clip(None)
