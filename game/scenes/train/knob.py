@@ -21,7 +21,7 @@ from game.input.controls import Command, translate
 from game.training.run_settings import KnobDescription, figure
 from game.ui.widget import RowWidget, mix
 
-_LABELS, _FIGURES = 150.0, 62.0  # points from the label to the track, and from the track to the right end
+_LABELS, _FIGURES = 150.0, 72.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0
 _GAP: Final = 14.0  # between words
 _NOTE: Final = LABEL - 1.5  # size of text over a track

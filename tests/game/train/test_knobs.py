@@ -8,10 +8,12 @@ import pytest
 
 from ai.training.config import PRESETS, in_force
 from game.core import texts
+from game.drawing.canvas import Canvas
 from game.scenes.train.base import KNOBS
 from game.scenes.train.knob import Knob, SliderKnob, WordsKnob
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.scene import TrainScene
+from game.training.run_settings import figure
 from tests.support.driver import Driver
 from tests.support.written import words_written
 
@@ -214,3 +216,20 @@ def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         written = words_written(patch)
         game.frames(1)
     return written
+
+
+def test_a_figure_of_seven_digits_stands_clear_of_the_handle_at_the_end_of_its_track(
+    panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch
+):
+    _, seen = panel
+    boxes: dict[str, pygame.FRect] = {}
+    text = Canvas.text
+
+    def noted(canvas: Canvas, string: str, *more: Any, **options: Any) -> pygame.FRect:
+        boxes[string] = box = text(canvas, string, *more, **options)
+        return box
+
+    monkeypatch.setattr(Canvas, "text", noted)
+    knob = seen.knob("replay_size")
+    assert knob.value == 1_000_000
+    assert boxes[figure(1_000_000)].left > knob.track[1] + 6
