@@ -280,10 +280,13 @@ class Walk:
         return Driver(App(context, make, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False))
 
     def _note(self, driver: Driver, place: str) -> None:
-        for _ in range(3):  # until a message has moved away from what has moved
-            driver.frames(1)
+        driver.frames(3)
         page = self._written.turn(driver.app.canvas)
         driver.app.draw()
+        message = driver.app.notes.text
+        if page.notes and page.notes[-1].text in message:  # for five seconds its panel lies over what stands there
+            cover = page.panels[-1]
+            page.notes = [note for note in page.notes if note.text in message or not cover.colliderect(note.box)]
         for note in page.notes:
             if note.code:
                 continue
