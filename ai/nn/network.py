@@ -87,15 +87,18 @@ class NeuralNetwork:
         Inputs of a network for images are (batch, height, width, channels), or without the batch as well.
         Leaves no trace: a backward pass may still follow the last `forward_propagate`.
         """
-        data = self._input(input_data)
+        return self._answer(self._input(input_data))
+
+    def _answer(self, data: Array) -> Array:
+        """Return the output for what `_input` has taken."""
         if data.ndim == 3:
-            one: Array = self.predict(data[None])[0]
+            one: Array = self._answer(data[None])[0]
             return one
         if data.ndim == 2 and len(data) == 1:  # as a vector: in two thirds of the time
-            answer: Array = self.predict(data[0])[None]
+            answer: Array = self._answer(data[0])[None]
             return answer
         if data.ndim == 4 and len(data) > IMAGES:
-            return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
+            return np.concatenate([self._answer(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:
             data = layer.predict(data)
         return data

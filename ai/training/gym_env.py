@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 GOING_ON: Final = 0
 FAILED: Final = 2
+_LARGEST: Final = float(np.finfo(np.float32).max)  # of what networks can take
 T = TypeVar("T")
 
 
@@ -177,9 +178,6 @@ class GymEnv:
             row[number] = 1.0
             return
         row[:] = seen.reshape(-1)
-
-
-_LARGEST: Final = float(np.finfo(np.float32).max)  # of what networks can take
 
 
 def features_of(space: Any) -> int:
