@@ -141,11 +141,12 @@ def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., A
 def _paid_by(training: Any, path: Path) -> Callable[[], None]:
     """Let a file of the user's own pay a run; return what ends its process. Raises ValueError."""
     from ai.lander.environment import LanderEnv
-    from ai.pilots.own import pay_by
+    from ai.pilots.own import OwnPay
 
     if not isinstance(training.env, LanderEnv):
         raise ValueError("--pay is for landers")
-    return pay_by(training.env, path)
+    training.env.pay = pay = OwnPay(path)
+    return pay.close
 
 
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
