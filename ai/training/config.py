@@ -25,7 +25,7 @@ _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without fli
 
 @dataclass(frozen=True)
 class Config(AgentConfig):
-    """Settings of one training run: its agent's, then those of what it flies in. The defaults are the preset *modern*."""
+    """Settings of one training run: its agent's, then those of what it flies in. The defaults are preset *modern*."""
 
     # fmt: off
     random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
