@@ -16,7 +16,11 @@ from ai.training.config import PRESETS, Config
 from ai.training.history import Checkpoint, History, SettingChange
 from tests.support.points import point as moment
 
-_MADE_WITH = PRESETS | {"modern": Config()}  # recorded before modern learned as it does now
+_RECORDED = PRESETS["modern"].changed(  # before modern learned as it does now
+    learning_rate=2e-3, schedule_decisions=600_000, n_step=10, batch_size=256, gradient_steps=12, activation="relu",
+    target_judges=True, double=True, final_tau=1.0, epsilon_decisions=40_000, spawn="thorough",
+)  # fmt: skip
+_MADE_WITH = PRESETS | {"modern": _RECORDED}
 FILE = Path(__file__).parents[1] / "ai" / "training" / "broken_runs.npz"
 
 

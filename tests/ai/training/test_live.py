@@ -140,8 +140,8 @@ def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin):
 
 
 ELSEWHERE = {
-    "batch_size": 64, "gradient_steps": 3, "mirror": False, "double": False, "fly_target": False,
-    "target_judges": False, "target_update_interval": 7,
+    "batch_size": 64, "gradient_steps": 3, "mirror": False, "double": True, "fly_target": False,
+    "target_judges": True, "target_update_interval": 7,
     "success_pass": True, "success_batch_size": 16, "epsilon_decisions": 100, "epsilon_decay": 0.91,
     "steadiness": 0.5, "discount": 0.9,
 }  # fmt: skip
@@ -173,7 +173,11 @@ def test_every_live_knob_makes_a_difference(begin, subtests):
         n_step=3, gradient_clip=0.5, epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, schedule_decisions=1000,
         reward_scale=1.0, epsilon_decisions=2000,
     )  # fmt: skip
-    needs = {"success_batch_size": {"success_pass": True}, "epsilon_decay": {"epsilon_decisions": 0}}
+    needs = {
+        "success_batch_size": {"success_pass": True},
+        "epsilon_decay": {"epsilon_decisions": 0},
+        "double": {"target_judges": True},
+    }
     quiet = trained(begin, usual, "", None)
     for name in live:
         with subtests.test(name):
