@@ -19,4 +19,4 @@ def point(**values: Any) -> Progress:
 def point_of(row: np.ndarray) -> Progress:
     """Return the progress whose numbers are a row of a history's points."""
     numbers = row.tolist()
-    return Progress(*numbers[: -len(PARTS)], parts=tuple(numbers[-len(PARTS) :]))
+    return Progress(*numbers[: -len(PARTS)], tuple(numbers[-len(PARTS) :]))

@@ -11,13 +11,12 @@ from ai.training.history import (
     COLUMNS,
     HISTORY_FILE,
     MOST_CHECKPOINTS,
-    PARTS,
     Checkpoint,
     History,
     SettingChange,
     Validation,
 )
-from ai.training.loop import Progress
+from ai.training.loop import PARTS, Progress
 
 
 def point(number):

@@ -10,9 +10,9 @@ from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping
 from ai.training.config import Config, gym_config
-from ai.training.history import PARTS, REVERTED, Checkpoint, History, SettingChange, Validation
+from ai.training.history import REVERTED, Checkpoint, History, SettingChange, Validation
 from ai.training.lander_session import LanderSession
-from ai.training.loop import Progress, Training
+from ai.training.loop import PARTS, Progress, Training
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from ai.training.run import resume
 from ai.training.tasks import LanderTask

@@ -8,8 +8,9 @@ import pytest
 
 from ai.digits.training import DigitProgress
 from ai.training.config import PRESETS, Config
-from ai.training.history import COLUMNS, DIGIT_COLUMNS, PARTS, History, SettingChange, Validation
+from ai.training.history import COLUMNS, DIGIT_COLUMNS, History, SettingChange, Validation
 from ai.training.lander_session import LanderSession
+from ai.training.loop import PARTS
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
