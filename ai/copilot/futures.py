@@ -17,8 +17,9 @@ from ai.environment import Bools, Doubles, Ints, T, finished
 from ai.lander.environment import LanderEnv, LanderParams, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
-from ai.lander.rules import ACTION_SHARES, nearest_action
+from ai.lander.rules import ACTION_SHARES
 from engine import DT
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
@@ -34,20 +35,6 @@ _LOW, _LEG, _SOON = 0.1, 1.5, 0.1
 _BATCH: Final = 4096  # futures at most in one batch: more take no less time each
 
 
-class Push(NamedTuple):
-    """What is pushed for one decision: an action, 0 to 5, and the shares of thrust of main engine and jets."""
-
-    action: int
-    main: float
-    side: float
-
-    @classmethod
-    def of(cls, main: float, side: float) -> Push:
-        """Return the push of these shares of thrust, with the action that is nearest to them."""
-        return cls(nearest_action(main, side), main, side)
-
-
-KEYS: Final = tuple(Push(action, *shares) for action, shares in enumerate(ACTION_SHARES.tolist()))
 Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future, before the network has the stick
 
 
@@ -59,7 +46,7 @@ class Plan:
         begin: physics steps flown when it begins.
         gravity: of its world, m/s².
         target: number of the pad that the network flew to in it.
-        actions, shares: what is pushed in its k decisions, (k,), and with which shares of thrust, (k, 2).
+        shares: what is pushed in its k decisions, as shares of thrust, (k, 2).
         states: x, y, angle, and their changes each second, before every decision and at its end, (k + 1, 6).
 
     """
@@ -67,23 +54,22 @@ class Plan:
     begin: int
     gravity: float
     target: int
-    actions: Ints
     shares: Doubles
     states: Doubles
 
     @property
     def ends(self) -> int:
         """Physics steps flown when it has landed."""
-        return self.begin + DECISION_STEPS * len(self.actions)
+        return self.begin + DECISION_STEPS * len(self.shares)
 
     def push(self, here: Here) -> Push | None:
         """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
         number, between = divmod(here.steps - self.begin, DECISION_STEPS)
-        if between or not 0 <= number < len(self.actions) or here.gravity != self.gravity:
+        if between or not 0 <= number < len(self.shares) or here.gravity != self.gravity:
             return None
         if tuple(self.states[number].tolist()) != here.state:
             return None
-        return Push(int(self.actions[number]), *self.shares[number].tolist())
+        return Push.of(*self.shares[number].tolist())
 
 
 class Here(NamedTuple):
@@ -257,7 +243,7 @@ class Lookahead:
         start = moment.take(np.array([row for row, _, _ in asked]))
         start.target[:] = [pad for _, _, pad in asked]
         # A row more than there are decisions: what has ended, or waits, writes into the next one.
-        actions, shares = np.zeros((_MOST + 1, count), dtype=np.intp), np.zeros((_MOST + 1, count, 2))
+        shares = np.zeros((_MOST + 1, count, 2))
         states = np.empty((_MOST + 2, count, 6))
         flown, landed, touched = np.zeros((3, count), dtype=np.intp)
         env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
@@ -272,7 +258,7 @@ class Lookahead:
             opens = np.flatnonzero(at < length[future])
             given = pushed[at[opens], future[opens]]
             action[opens], share[opens] = given[:, 0], given[:, 1:]
-            actions[at, future], shares[at, future] = action[:n], share[:n]
+            shares[at, future] = share[:n]
             env.fly(action, share)
             states[at + 1, future] = _states(env)[:n]
             moves = flies & ~waits
@@ -296,7 +282,7 @@ class Lookahead:
                 flies, waits, down = masks
         found = []
         for row, end in enumerate(flown.tolist()):
-            way = actions[:end, row].copy(), shares[:end, row].copy(), states[: end + 1, row].copy()
+            way = shares[:end, row].copy(), states[: end + 1, row].copy()
             found.append((Plan(int(start.steps[row]), start.fall(row), asked[row][2], *way), bool(landed[row])))
         return found
 
@@ -325,7 +311,7 @@ def _table(openings: Sequence[Opening]) -> tuple[Ints, Doubles]:
     length = np.array([len(opening) for opening in openings])
     pushed = np.zeros((length.max(), len(openings), 3))
     for index, opening in enumerate(openings):
-        pushed[: len(opening), index] = opening
+        pushed[: len(opening), index] = [(push.action, *push.shares) for push in opening]
     return length, pushed
 
 
