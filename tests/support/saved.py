@@ -123,9 +123,7 @@ def _read_settings(folder: Path) -> Any:
 
 
 def _flight(folder: Path, version: int) -> None:
-    recording = Recording(
-        version, "random", pushes=[KEYS[action] for action in (0, 3, 3, 1)], hands=[StickHolder.HUMAN] * 4
-    )
+    recording = Recording(version, "random", pushes=list(KEYS), hands=[StickHolder.HUMAN] * len(KEYS))
     entry = Entry(1e9, "CRASHED", 1.0, 0.5, 3.0, 1.0, network="modern", file=f"{version}.json")
     with suppress(FileExistsError):
         flight_file.write(folder / "flights" / entry.file, Record(recording, entry, (0.0, 1.0, 0.0)))

@@ -275,14 +275,14 @@ def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
     challenge, down = challenge_of(driver), begun(0)
     place(down.env, *ON_PAD)
     while not down.over:
-        down.step(0)
+        down.step()
     card = outcome_card(down.env, 1.0)
     for human, saved, title, reason in (
         (1.0, 0, texts.TUTORIAL_DONE, texts.TUTORIAL_NOT_NEEDED),
         (0.7, 0, texts.TUTORIAL_GOOD["land"], texts.TUTORIAL_HELPED.format(who=texts.THE_NETWORK, percent=30)),
         (0.7, 1, texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED),
     ):
-        landed = SimpleNamespace(share=human, network=play(driver).flight.chooser.network)
+        landed = SimpleNamespace(share=human, chooser=play(driver).flight.chooser)
         shown = challenge.card(replace(card, stepped_in=saved), landed, play(driver).credit)
         assert (shown.title, shown.reason) == (title, reason), (human, saved)
 

@@ -135,7 +135,8 @@ def follow(shown: Interventions, assist: float | None, *, changed: bool = False)
     """Follow a step under a guardian with that assist, or under none."""
     guarded, decision = assist is not None, SimpleNamespace(assist=assist)
     flight = SimpleNamespace(
-        decision=decision, shared=guarded, guarded=guarded, guard=None, overridden=changed,
+        choice=SimpleNamespace(together=decision, guarded=guarded, overridden=changed),
+        chooser=SimpleNamespace(shared=guarded, guard=None),
         env=SimpleNamespace(position=np.zeros((1, 2))),
     )  # fmt: skip
     shown.follow(flight)
