@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Final, Generic, Self, TypeVar
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
 from ai.training.messages import Command, Refused, RunStarted, problem_of
-from ai.training.run import Keeper, step
+from ai.training.run import Keeper
 from ai.training.run import resume as resume_run
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
@@ -110,7 +110,7 @@ class Session(ABC, Generic[R]):
             command = yield self._answer(None)
             while not (training.done or command == ("finish",)):
                 if command is None:
-                    self.tell(step(training))
+                    self.tell(training.advance())
                     self.messages += self.keeper.go_on(training.clock())
                 command = yield self._answer(command)
             for _ in self.last_words():

@@ -43,4 +43,5 @@ def test_half_way_it_is_half_way():
 
 def test_without_a_last_share_the_target_s_rate_never_changes_by_a_bit():
     for tau in (1.0, 0.1, 0.005, 0.0003):
-        assert {target_rate(Config(tau=tau), decisions) for decisions in range(0, 900_000, 12_347)} == {tau}
+        config = Config(tau=tau, final_tau=1.0)
+        assert {target_rate(config, decisions) for decisions in range(0, 900_000, 12_347)} == {tau}

@@ -2,6 +2,8 @@
 
 import errno
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -32,6 +34,27 @@ def edited(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     opened: list[Path] = []
     monkeypatch.setattr(pilots, "edit", opened.append)
     return opened
+
+
+def test_an_editor_is_opened_on_the_file_and_none_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    called = []
+
+    class Opened:
+        def __init__(self, command, **_):
+            called.append(command)
+
+        def wait(self):
+            pass
+
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(subprocess, "Popen", Opened)
+    pilots.edit(tmp_path / "pilot.py")
+    assert called == [["xdg-open", str(tmp_path / "pilot.py")]]
+    monkeypatch.undo()
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(OSError, match="xdg-open"):
+        pilots.edit(tmp_path / "pilot.py")
 
 
 def scene(driver: Driver) -> WatchScene:
