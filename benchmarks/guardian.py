@@ -120,7 +120,7 @@ def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None
         rng, ahead, found = np.random.default_rng(seed), Watched(), Live()
         for number in range(flights):
             flight = begin(Recording(int(rng.integers(1 << 30)), "random"), agent)
-            guard = flight.chooser.guard_by(ahead)
+            guard = flight.chooser.guard = Guard(flight.chooser, ahead)
             flight.chooser.help(dial)
             found.fly(flight, guard, rng, hands, period, ready=30 if number else 120)
         ahead.close()

@@ -16,7 +16,6 @@ from game.flight.networks import DECISION_STEPS, Policy, QPolicy, decide, decisi
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
-    from ai.copilot.futures import FlownAhead
     from game.flight.flight import Flight
     from game.flight.guard import Guard
 
@@ -188,13 +187,6 @@ class Crew:
         """Set the co-pilot's assist, 0 to 1, from the next decision on."""
         if self.copilot:
             self.copilot.assist = assist
-
-    def guard_by(self, ahead: FlownAhead) -> Guard:
-        """Let a guardian go by the futures that are flown ahead, from the next decision on."""
-        from game.flight.guard import Guard
-
-        self.guard = Guard(self, ahead)
-        return self.guard
 
     def hand_over(self) -> bool:
         """Hand the stick over between person and network; return False without a network."""

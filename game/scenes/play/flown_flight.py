@@ -177,7 +177,9 @@ class FlownFlight:
         flight = self.flight
         flight.chooser.help(0.0 if self.credit.alone else ASSISTS[self.helped.help])
         if flight.chooser.guard is None and flight.chooser.shared and (ahead := self.context.ahead()):
-            flight.chooser.guard_by(ahead)
+            from game.flight.guard import Guard
+
+            flight.chooser.guard = Guard(flight.chooser, ahead)
 
     def prepare(self) -> None:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""

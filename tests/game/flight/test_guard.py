@@ -17,7 +17,7 @@ from game.core.settings import Settings
 from game.flight.credit import Credit
 from game.flight.flight import StickHolder
 from game.flight.futures import FuturesProcess
-from game.flight.guard import Taps, nearest
+from game.flight.guard import Guard, Taps, nearest
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.interventions import Interventions
 from game.scenes.play.words import why_not_saved
@@ -34,7 +34,7 @@ def agent():
 
 def guarded(agent, seed=0, assist=GUARD):
     flight = begun(seed, agent, "rung_1")
-    flight.chooser.guard_by(AtOnce())
+    flight.chooser.guard = Guard(flight.chooser, AtOnce())
     flight.chooser.help(assist)
     flight.chooser.guard.hang(flight, Push())
     return flight
@@ -173,7 +173,7 @@ def test_the_process_flies_what_is_asked_for_first_and_then_every_key(agent):
     ahead = FuturesProcess()
     try:
         flight = begun(0, agent, "rung_1")
-        flight.chooser.guard_by(ahead)
+        flight.chooser.guard = Guard(flight.chooser, ahead)
         flight.chooser.help(GUARD)
         flight.chooser.guard.hang(flight, KEYS[2])
         until = time.monotonic() + 60
@@ -204,7 +204,7 @@ def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_nam
 @pytest.mark.slow
 def test_a_leg_of_a_descent_is_guarded_along_its_route(agent):
     flight = begun(0, agent, leg=LegStart())
-    flight.chooser.guard_by(AtOnce())
+    flight.chooser.guard = Guard(flight.chooser, AtOnce())
     flight.chooser.help(GUARD)
     flight.chooser.guard.hang(flight, Push())
     assert fly(flight, lambda _: KEYS[2], most=24).chooser.guard.safe
