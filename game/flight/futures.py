@@ -17,10 +17,11 @@ from typing import Final, NamedTuple
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.normalizer import Normalizer
-from ai.copilot.futures import KEYS, Future, Lookahead, Opening, Push
+from ai.copilot.futures import Future, Lookahead, Opening
 from ai.environment import Floats
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
 from game.core import texts
 from game.core.worker import Worker, WorkerState
@@ -148,7 +149,7 @@ class _Order:
     def __init__(self, request: Request, lookahead: Lookahead, found: dict[Push, int]) -> None:
         self._request, self._lookahead, self._found = request, lookahead, found
         self._asked: Push | None = request.asked
-        _, main, side = request.asked
+        main, side = request.asked
         self._left = sorted(KEYS, key=lambda key: (found.get(key, 0), hypot(key.main - main, key.side - side)))
         self._guesses = False  # whether what is flown now was not asked for
         self.flown = self._fly()
