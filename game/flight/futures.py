@@ -172,7 +172,7 @@ class _Order:
             self._found[push] = number
 
 
-def fly_ahead() -> Generator[Iterable[Found] | None, Any, None]:
+def fly_ahead() -> Generator[Iterable[Found] | None, object, None]:
     """Fly the futures of the latest request; for a `Worker`."""
     sys.setswitchinterval(_SWITCH)
     lookahead = Lookahead(DeepQAgent())
