@@ -7,8 +7,8 @@ the online network, squared error at the chosen actions only, the way back, one 
 one observation through the network. PyTorch has its fused Adam, and is measured as it is, compiled (where there is a
 C++ compiler; it takes a minute at first) and, for a decision, traced and optimized for inference: the table has the
 quickest, and says which. A `learn` is all that the preset modern learns in one decision, from a memory of a million,
-drawn uniformly and by priorities. All take turns, ten updates or a hundred decisions each, so that a busy machine slows all;
-times are processor time, without that of other work.
+drawn uniformly and by priorities. All take turns, ten updates or a hundred decisions each, so that a busy machine slows
+all; times are processor time, without that of other work.
 """
 
 import os
