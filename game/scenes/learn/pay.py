@@ -184,7 +184,8 @@ class PayChapter(Chapter):
         for _ in range(_PACE):
             trial.step()
         if trial.over:
-            self.results[self.pay], self.tried, self.changed = trial.flown(), True, True
+            self.results[self.pay], self.changed = trial.flown(), True
+            self.found()
 
     def verdict(self) -> int | None:
         """Return what most flights did on the pay of the question: land, fly on, or crash; None before it was tried."""
