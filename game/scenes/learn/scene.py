@@ -52,7 +52,8 @@ class ChapterScene(PanelScene):
         self.chapter = chapter_type(key)(context)
         # One that is done asks for a guess again.
         self.begun = self._progress.guess(key) is not None and not self._progress.done(key)
-        self.finding, self.came, self.in_code = "", None, False
+        self.finding, self.in_code = "", False
+        self.came: int | None = None
         self._progress.note(key)
         self.build()
 
