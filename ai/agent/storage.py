@@ -105,6 +105,8 @@ def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) 
     """Make an agent as the file of settings and counts describes it."""
     described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, VERSION)
     settings = read_as(_Described, described).config
+    if missing := AgentConfig.names() - settings.keys():
+        raise ValueError(f"settings are missing: {', '.join(sorted(missing))}")
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
     features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
     agent = make(features, actions, AgentConfig.from_json(settings))

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
+from ai.digits.training import DigitProgress
 from ai.environment import Doubles, Floats
 from ai.files import (
     MOST,
@@ -29,11 +30,11 @@ from ai.files import (
 )
 from ai.files import described as array_said
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
-from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
+from ai.run import Measured
 from ai.training.config import Config
+from ai.training.loop import PARTS, Progress
 
-PARTS: Final = tuple(REWARDS)
 REVERTED: Final = "checkpoint"  # the name of the change that goes back to one
 HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
@@ -44,55 +45,9 @@ _MOST_VALUES: Final = 1 << 26  # numbers in all checkpoints together: 256 MB
 _MOST_COLUMNS: Final = 1000
 
 
-@dataclass(frozen=True)
-class _Measured:
-    may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """The numbers of its columns."""
-        return tuple(np.hstack(list(vars(self).values())).tolist())
-
-
-@dataclass(frozen=True)
-class Point(_Measured):
-    """Point of an agent's curves after one decision.
-
-    Unknown values are NaN: before the first flight has ended, and before the first learning step, which after a
-    resumption waits for new memories. Shares and means are of the last hundred flights, random actions included.
-    """
-
-    seconds: float  # of training so far, pauses left out
-    decisions: float  # so far, of single landers
-    episodes: float  # that have ended
-    success: float  # share that landed
-    mean_return: float  # points of reward
-    loss: float  # error of the last learning step
-    mean_q: float  # what the network expects, in scaled points
-    epsilon: float  # share of random actions
-    stage: float  # of the curriculum
-    crashed: float = 0.0  # share; the next ones too
-    out_of_bounds: float = 0.0
-    timed_out: float = 0.0
-    parts: tuple[float, ...] = (0.0,) * len(PARTS)  # points that each part of the reward has paid per flight
-
-
-@dataclass(frozen=True)
-class DigitPoint(_Measured):
-    """Point of a digit run's curves; loss and accuracy are means of the batches since the last point."""
-
-    seconds: float  # of training so far, pauses left out
-    step: int  # learning steps so far
-    epoch: float  # how often every image was seen
-    loss: float
-    accuracy: float  # share of images read right as they were learnt from: bent, and with dropout
-    learning_rate: float
-    images_per_second: float
-
-
 # What a run measures at each of its points, by name.
-COLUMNS: Final = (*(item.name for item in fields(Point)[:-1]), *PARTS)
-DIGIT_COLUMNS: Final = tuple(item.name for item in fields(DigitPoint))
+COLUMNS: Final = (*(item.name for item in fields(Progress)[:-1]), *PARTS)
+DIGIT_COLUMNS: Final = tuple(item.name for item in fields(DigitProgress))
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +113,7 @@ class Validation:
     seconds: float = field(default=0.0, compare=False)  # of training
 
 
-Entry = _Measured | Checkpoint | SettingChange | Validation
+Entry = Measured | Checkpoint | SettingChange | Validation
 
 
 @dataclass(frozen=True)
@@ -184,7 +139,7 @@ class _HistoryFile:
 class History:
     """History of a run, as charts show it. Memory is bounded: when full, every other point is dropped.
 
-    `history["success"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
+    `history["success_rate"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
     are as the run was when asked for, until the next `append`.
 
     Attributes:
@@ -225,7 +180,7 @@ class History:
     def append(self, entry: Entry) -> None:
         """Record an entry of any kind."""
         match entry:
-            case _Measured():
+            case Measured():
                 self._append_point(entry)
             case Checkpoint():
                 self._append_checkpoint(entry)
@@ -234,7 +189,7 @@ class History:
             case Validation():
                 self.validations.append(entry)
 
-    def _append_point(self, point: _Measured) -> None:
+    def _append_point(self, point: Measured) -> None:
         # The latest point is always the last row; the next takes its place, unless its number is on the stride.
         if self._length == 0 or (self._appended - 1) % self._stride == 0:
             if self._length == CAPACITY:

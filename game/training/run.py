@@ -7,12 +7,14 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
+from ai.digits.training import DigitProgress
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
 from ai.training.config import InForce
-from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
+from ai.training.history import Checkpoint, History, SettingChange, Validation
+from ai.training.loop import Progress
 from ai.training.messages import FirstLanding, NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
 from game.core.collection import Collection
@@ -31,7 +33,9 @@ _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
     Confusion: "confusion", FirstLanding: "first_landing",
 }  # fmt: skip
-_ENTRIES: Final[dict[type, str]] = dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history")
+_ENTRIES: Final[dict[type, str]] = dict.fromkeys(
+    (Progress, DigitProgress, Checkpoint, Validation, SettingChange), "history"
+)
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
 _TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "in_force"

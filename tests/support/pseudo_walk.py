@@ -214,9 +214,9 @@ STATES = [
     Stop("PhysicsScene", "a law", measured),
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
-    *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
-    Stop("modern inside", "inside", partial(inside, 3)),
-    Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
+    Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),
+    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
+    Stop("modern inside", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
         for key, labels, steps in (

@@ -26,7 +26,7 @@ from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL
 from game.explain.figures import points
 from game.explain.tables import Line, from_zero, table
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS
+from game.flight.networks import DECISION_STEPS
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
 from game.ui.context import Context

@@ -126,7 +126,9 @@ def came_card(lesson: Lesson) -> Card:
         words = texts.LESSON_RETURN.format(discount=f"{discount:g}", count=count)
         whole = Line((words, *[""] * (2 if flown else 0), points(pay)), texts.LESSON_RETURN_HELP, lit=True)
         left.add(table(texts.LESSON_PAY if flown else (), lambda: [*lines, whole]))
-        if flown is not None and flown.outcome != Outcome.FLYING:
+        if flown is None:
+            left.aside(texts.LESSON_NOT_KNOWN)
+        elif flown.outcome != Outcome.FLYING:
             left.text(texts.LESSON_OUTCOMES[flown.outcome - 1], size=SMALL)
         changes = [
             Line((name, sensed(before[feature], feature), sensed(after[feature], feature)), what_is_sensed(feature))

@@ -90,7 +90,7 @@ class TrainScene(TrainingScene):
         landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
         count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
         line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
-        share = 100 * run.history["success"][row]
+        share = 100 * run.history["success_rate"][row]
         if self.rewind.moment is None and self.charts.landed and self.charts.landed[0] is not None:
             share = self.charts.landed[0]  # one number for the title and its chart
         figure = "" if np.isnan(share) else f"{share:.0f}"

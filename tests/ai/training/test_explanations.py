@@ -31,7 +31,7 @@ def test_the_memory_lies_in_the_replay_buffer():
     session = run()
     for _ in range(120):
         next(session)
-    replay = session.gi_frame.f_locals["session"].training.agent.replay
+    replay = session.training.agent.replay
     for slot in range(6):
         lesson = ask(session, slot)
         assert isinstance(lesson, Lesson)
@@ -101,7 +101,7 @@ def test_what_cannot_be_explained_is_refused_and_the_run_is_not_lost():
         answer = ask(asked, slot)
         assert isinstance(answer, Refused)
         assert why in answer.problem
-    agent = session.gi_frame.f_locals["session"].training.agent
+    agent = session.training.agent
     before = agent.online.values.copy()
     agent.online.values[0] = np.inf
     assert isinstance(ask(session, 0), Refused), "it has diverged"

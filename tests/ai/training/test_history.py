@@ -11,17 +11,17 @@ from ai.training.history import (
     COLUMNS,
     HISTORY_FILE,
     MOST_CHECKPOINTS,
-    PARTS,
     Checkpoint,
     History,
-    Point,
     SettingChange,
     Validation,
 )
+from ai.training.loop import PARTS, Progress
 
 
 def point(number):
-    return Point(**dict.fromkeys(COLUMNS[:9], float(number)), crashed=0.25, parts=tuple(range(len(PARTS))))
+    same = dict.fromkeys(COLUMNS[: -len(PARTS)], float(number))
+    return Progress(**same | {"crashed": 0.25, "parts": tuple(range(len(PARTS)))})
 
 
 def checkpoint(number, scale=None):
