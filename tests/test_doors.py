@@ -31,8 +31,9 @@ OPENED = {
     "game.scenes.digits.scene": ({"self.context.settings.open"}, "a part of the panel"),
     "game.scenes.learn.scene": ({"self.context.settings.open"}, "a part of the panel"),
     "game.scenes.physics.scene": ({"self.context.settings.open"}, "a part of the panel"),
-    "game.scenes.train.base": ({"self._settings.open"}, "a part of the panel"),
-    "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),
+    "game.scenes.train.laboratory": ({"self.open"}, "a part of the panel"),
+    "game.scenes.train.landers": ({"self.scene.open"}, "a part of the panel"),
+    "game.scenes.train.scene": ({"self._settings.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Concatenate, Final, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Final, ParamSpec, TypeVar
 
 import pygame
 
@@ -134,9 +134,12 @@ class Column:
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
     slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
-    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
+    def words(
+        self, words: Sequence[tuple[str, OnPress]], size: float = TEXT, colour: Colour | None = None
+    ) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        buttons = [self._form.add(ButtonRow(label, press, size=size)) for label, press in words]
+        style: dict[str, Any] = {"size": size} | ({"colour": colour} if colour else {})
+        buttons = [self._form.add(ButtonRow(label, press, **style)) for label, press in words]
         self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons
