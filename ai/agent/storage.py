@@ -42,7 +42,8 @@ AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
 _ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
-KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
+KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, *_OF_A_RUN), {**_ALONE.folders, LAST: _ALONE})
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
