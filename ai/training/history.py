@@ -5,7 +5,6 @@ On disk, curves are a table that any program opens, `curves.csv`.
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Sequence
 from copy import copy
@@ -235,8 +234,8 @@ class History:
             "validations": [asdict(validation) for validation in self.validations],
         }  # fmt: skip
         (folder / HISTORY_FILE).write_text(json.dumps(described, allow_nan=False) + "\n", encoding="utf-8")
-        with (folder / CURVES_FILE).open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerows([self.columns, *self.points.tolist()])
+        rows = (",".join(map(repr, row)) for row in self.points.tolist())
+        (folder / CURVES_FILE).write_text("\n".join([",".join(self.columns), *rows]) + "\n", encoding="utf-8")
         values = np.array([each.values for each in self.checkpoints] or np.empty((0, 0)), dtype=np.float32)
         np.savez(folder / CHECKPOINTS_FILE, allow_pickle=False, values=values)
 
