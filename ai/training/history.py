@@ -280,8 +280,11 @@ class History:
         self._length = len(lines) - 1
         if not self._length <= min(self._appended, CAPACITY):
             raise ValueError(f"{self._length} points of {self._appended}, at a stride of {self._stride}")
-        if self._length:
-            self.points[...] = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
+        for row, line in enumerate(lines[1:]):
+            numbers = line.split(",")
+            if len(numbers) != len(self.columns):
+                raise ValueError(f"{len(numbers)} numbers in line {row + 2}, of {len(self.columns)} columns")
+            self.points[row] = numbers
 
     def _restore_networks(self, values: Floats) -> None:
         """Give the checkpoints their networks; raises ValueError where they do not fit."""
