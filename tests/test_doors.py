@@ -29,6 +29,7 @@ OPENED = {
     "game.export.gif": ({"path.open"}, "writes"),
     "game.scenes.learn.one_file": ({"MICROLANDER.read_text"}, "comes with the program"),
     "game.scenes.digits.scene": ({"self.context.settings.open"}, "a part of the panel"),
+    "game.scenes.learn.scene": ({"self.context.settings.open"}, "a part of the panel"),
     "game.scenes.physics.scene": ({"self.context.settings.open"}, "a part of the panel"),
     "game.scenes.train.base": ({"self._settings.open"}, "a part of the panel"),
     "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),

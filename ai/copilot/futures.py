@@ -13,12 +13,13 @@ from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
-from ai.environment import Bools, Doubles, Ints, T, finished
+from ai.environment import Bools, Doubles, T, finished
 from ai.lander.environment import LanderEnv, LanderParams, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
-from ai.lander.rules import ACTION_SHARES, nearest_action
+from ai.lander.rules import ACTION_SHARES
 from engine import DT
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
@@ -30,20 +31,6 @@ _STUCK: Final = round(RESTLESS / DT) // DECISION_STEPS
 _BATCH: Final = 4096  # futures at most in one batch: more take no less time each
 
 
-class Push(NamedTuple):
-    """What is pushed for one decision: an action, 0 to 5, and the shares of thrust of main engine and jets."""
-
-    action: int
-    main: float
-    side: float
-
-    @classmethod
-    def of(cls, main: float, side: float) -> Push:
-        """Return the push of these shares of thrust, with the action that is nearest to them."""
-        return cls(nearest_action(main, side), main, side)
-
-
-KEYS: Final = tuple(Push(action, *shares) for action, shares in enumerate(ACTION_SHARES.tolist()))
 Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future, before the network has the stick
 
 
@@ -55,7 +42,7 @@ class Plan:
         begin: physics steps flown when it begins.
         gravity: of its world, m/s².
         target: number of the pad that the network flew to in it.
-        actions, shares: what is pushed in its k decisions, (k,), and with which shares of thrust, (k, 2).
+        shares: what is pushed in its k decisions, as shares of thrust, (k, 2).
         states: x, y, angle, and their changes each second, before every decision and at its end, (k + 1, 6).
 
     """
@@ -63,23 +50,22 @@ class Plan:
     begin: int
     gravity: float
     target: int
-    actions: Ints
     shares: Doubles
     states: Doubles
 
     @property
     def ends(self) -> int:
         """Physics steps flown when it has landed."""
-        return self.begin + DECISION_STEPS * len(self.actions)
+        return self.begin + DECISION_STEPS * len(self.shares)
 
     def push(self, here: Here) -> Push | None:
         """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
         number, between = divmod(here.steps - self.begin, DECISION_STEPS)
-        if between or not 0 <= number < len(self.actions) or here.gravity != self.gravity:
+        if between or not 0 <= number < len(self.shares) or here.gravity != self.gravity:
             return None
         if tuple(self.states[number].tolist()) != here.state:
             return None
-        return Push(int(self.actions[number]), *self.shares[number].tolist())
+        return Push.of(*self.shares[number].tolist())
 
 
 class Here(NamedTuple):
@@ -249,7 +235,6 @@ class Lookahead:
         env = self._begin(start)
         flies, landed = np.ones(len(asked), dtype=bool), np.zeros(len(asked), dtype=bool)
         flown, grounded = np.zeros((2, len(asked)), dtype=np.intp)  # decisions, in all and at last on the ground
-        actions: list[Ints] = []
         shares: list[Doubles] = []
         states = [_states(env)]
         while flies.any():
@@ -257,10 +242,9 @@ class Lookahead:
             action = self.pilot.act(seen, held=env.actions).copy()
             share = ACTION_SHARES[action]
             for lander, (_, opening, _) in enumerate(asked):
-                if len(actions) < len(opening):
-                    action[lander], *share[lander] = opening[len(actions)]
+                if len(shares) < len(opening):
+                    action[lander], share[lander] = (push := opening[len(shares)]).action, push.shares
             env.fly(action, share)
-            actions.append(action)
             shares.append(share)
             states.append(_states(env))
             flown += flies
@@ -268,11 +252,11 @@ class Lookahead:
             late = env.time > env.limits.time - SPARE
             grounded = np.where(env.contacts.any(axis=1), grounded + 1, 0)
             landed |= flies & (env.outcome == Outcome.LANDED) & ~late
-            flies &= (env.outcome == Outcome.FLYING) & ~late & (grounded < _STUCK) & (len(actions) < _MOST)
-        pushed = np.array(actions), np.array(shares), np.array(states)
+            flies &= (env.outcome == Outcome.FLYING) & ~late & (grounded < _STUCK) & (len(shares) < _MOST)
+        flight = np.array(shares), np.array(states)
         found = []
         for lander, (row, _, pad) in enumerate(asked):
-            way = [part[: flown[lander] + more, lander].copy() for part, more in zip(pushed, (0, 0, 1), strict=True)]
+            way = [part[: flown[lander] + more, lander].copy() for more, part in enumerate(flight)]
             plan = Plan(int(moment.steps[row]), moment.fall(row), pad, *way)
             found.append((plan, bool(landed[lander])))
         return found

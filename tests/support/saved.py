@@ -14,6 +14,7 @@ import numpy as np
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
+from ai.lander.push import KEYS
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
 from ai.training.config import PRESETS
@@ -123,7 +124,7 @@ def _read_settings(folder: Path) -> Any:
 
 
 def _flight(folder: Path, version: int) -> None:
-    recording = Recording(version, "random", actions=[0, 3, 3, 1], hands=[StickHolder.HUMAN] * 4)
+    recording = Recording(version, "random", pushes=list(KEYS), hands=[StickHolder.HUMAN] * len(KEYS))
     entry = Entry(1e9, "CRASHED", 1.0, 0.5, 3.0, 1.0, network="modern", file=f"{version}.json")
     with suppress(FileExistsError):
         flight_file.write(folder / "flights" / entry.file, Record(recording, entry, (0.0, 1.0, 0.0)))

@@ -126,7 +126,7 @@ class DigitsScene(PanelScene):
             (texts.DIGITS_CLEAR, self.pad.clear),
             (texts.INSIDE_TITLE, self._look_inside),
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
-            (texts.DIGITS_MORE[self._more], self._open_more),
+            (texts.MORE[self._more], self._open_more),
         ])  # fmt: skip
         answer, why = right.beside((22, 33), least=_ANSWER)
         answer.add(self._write_answer)

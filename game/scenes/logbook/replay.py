@@ -217,7 +217,7 @@ class ReplayScene(FormScene):
 
     def _build(self) -> None:
         recording = self.record.recording
-        flown = recording.actions, recording.hands
+        flown = [push.action for push in recording.pushes], recording.hands
         self._strip = Timeline(_STRIP, texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go)
         self.form.add(self._strip)
         self._rows: list[Widget] = []

@@ -34,7 +34,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record: Record, small: None):
-    length = len(record.recording.actions)
+    length = len(record.recording.pushes)
     before, after, end = frames(ReplayScene, record, [0, 20, length])
     assert before.shape == after.shape == (90, 160, 3)
     changed = (before != after).any(axis=2)

@@ -218,7 +218,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     play = driver.top
     assert isinstance(play, PlayScene)
     assert play.network.name == "pilot.py"
-    assert play.flight.copilot is None  # it has no values to share the stick by
+    assert play.flight.chooser.copilot is None  # it has no values to share the stick by
     context.settings.help = "guard"
     reading = Reading(driver, monkeypatch)
     driver.key(pygame.K_c)
@@ -230,7 +230,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     driver.wait(lambda: context.pilot and context.pilot.ready, 60)
     driver.key(pygame.K_TAB)
     driver.wait(lambda: play.flight.over, 60)
-    assert play.flight.guard is None
+    assert play.flight.chooser.guard is None
     assert play.credit.bar == "handed_over"
     path.write_text("def act(:")
     driver.wait(lambda: "SyntaxError" in driver.said, 30)
