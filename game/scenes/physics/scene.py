@@ -173,7 +173,7 @@ class PhysicsScene(PanelScene):
         if not self.more:
             return
         column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
-        self.playback.describe(column)
+        column.widget(self.playback.choice())
         column.explain(what["speed"])
         column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
         column.explain(what["contacts"])

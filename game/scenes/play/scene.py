@@ -53,8 +53,6 @@ class PlayScene(Scene):
 
     """
 
-    flows = True
-
     def __init__(
         self,
         context: Context,

@@ -63,7 +63,6 @@ class TrainingScene(FormScene, ABC):
 
     """
 
-    flows = True
     knobs: KnobsPanel
     charts: TrainingCharts
     panel: Panel
