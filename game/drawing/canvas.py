@@ -66,6 +66,7 @@ class Canvas:
         self.palette = palette
         self.scale, self.zoom = 0.0, 1.0
         self._whole: Canvas | None = None
+        self._type = 0.0  # of a canvas that is no part of a window
         self.pointer: Point | None = None
         self.explained: deque[Explanation] = deque(maxlen=_MOST_EXPLAINED)
         self.attach(window)
@@ -86,7 +87,7 @@ class Canvas:
     @property
     def type(self) -> float:
         """Pixels per point of text, which is alike on all canvases of a window."""
-        return max(self.whole.scale, 1.0) * self.zoom
+        return self._type or max(self.whole.scale, 1.0) * self.zoom
 
     @property
     def whole(self) -> Canvas:
@@ -151,8 +152,8 @@ class Canvas:
     def _on(self, surface: pygame.Surface) -> Canvas:
         """Return a canvas on a surface of its own, which is no part of the window; of it nothing is explained."""
         own = copy(self)
-        own.surface, own.origin, own._whole = surface, (0, 0), self.whole
-        own.view = PAGE.copy()
+        own.surface, own.origin, own.view = surface, (0, 0), PAGE.copy()
+        own._whole, own._type = None, self.type
         own.explained = deque(maxlen=0)
         return own
 

@@ -101,7 +101,7 @@ class WorldScene(FormScene, ABC):
         self.lay_out()
         return outcome
 
-    def world(self, canvas: Canvas) -> Canvas:
+    def framed(self, canvas: Canvas) -> Canvas:
         """Return the canvas on which the world is drawn: its ground is above the foot."""
         return canvas.above(canvas.view.bottom - self.free.bottom)
 

@@ -195,9 +195,8 @@ class ReplayScene(WorldScene):
     def describe(self) -> None:
         """Add which flight it is, and its moment; the read-outs, the strip, and what can be done with the flight."""
         head, foot, recording = self.head, self.foot, self.record.recording
-        title, line = self._titles()
-        head.aside(title)
-        head.text(line)
+        head.aside(lambda: self._titles()[0])
+        head.text(lambda: self._titles()[1])
         head.add(self._write_moment)
         foot.add(lambda cursor: readouts.write_readouts(cursor, self._readouts))
         flown = recording.actions, recording.hands
@@ -281,7 +280,7 @@ class ReplayScene(WorldScene):
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        self._draw_world(self.world(canvas), alpha)
+        self._draw_world(self.framed(canvas), alpha)
         readouts.draw_shade(canvas, self.foot.box.top)
         self.draw_rows(canvas)
         self.explained.draw(canvas)

@@ -24,6 +24,7 @@ class Flyer:
 
     Attributes:
         policies: all that can be chosen.
+        index: number of the chosen one among them.
         network: the pilot that flies.
 
     """
@@ -53,11 +54,6 @@ class Flyer:
         return self._awaited or self.network
 
     @property
-    def index(self) -> int:
-        """Number of the chosen pilot among all."""
-        return self.policies.names.index(self.chosen.name)
-
-    @property
     def names(self) -> list[str]:
         """What all pilots are called."""
         return [brief(networks.word(name), LONGEST_NAME) for name in self.policies.names]
@@ -78,7 +74,7 @@ class Flyer:
 
     def choose(self, index: int) -> bool:
         """Choose a pilot by its number; return whether another one flies now."""
-        network = self.policies[self.policies.names[index]]
+        self.index, network = index, self.policies[self.policies.names[index]]
         self._awaited = None
         said = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem)
         self._problem = said if network.problem else ""

@@ -121,11 +121,9 @@ class WatchScene(WorldScene):
         """Draw the world, the swarm, the hand and the rows."""
         self.world.draw(canvas, self.playback.between(alpha))
         draw_shade(canvas, self.foot.box.top)
-        if not (above := self.hand.used(canvas.pointer)):
+        with canvas.clipped(self.free):
             self.hand.draw(canvas)
         self.draw_rows(canvas)
-        if above:
-            self.hand.draw(canvas)
         self.explained.draw(canvas)
 
     # Rows
@@ -218,7 +216,8 @@ class WatchScene(WorldScene):
 
     def _pick(self, point: tuple[float, float]) -> None:
         """Show the decisions of the lander nearest to a point, if one is close."""
-        if self._many and self.free.collidepoint(point) and (slot := self.world.nearest(point)) is not None:
+        clear = point[0] < self.free.right and point[1] < self.free.bottom
+        if self._many and clear and (slot := self.world.nearest(point)) is not None:
             self.world.shown = slot
 
     def _stop_or_go(self) -> None:

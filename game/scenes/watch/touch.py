@@ -45,7 +45,7 @@ class Hand(VirtualPointer):
     follows_mouse = False
 
     def __init__(self, lander: Watched) -> None:
-        super().__init__((0, 0, 1, 1), self._point, hold=texts.TOUCH_PARTS[PLACE], leave=texts.TOUCH_LEAVE, pace=4.0)
+        super().__init__((0, 0, 1, 1), self._point, hold=texts.TOUCH_DRAG, leave=texts.TOUCH_LEAVE, pace=4.0)
         self.key = "hand"
         self._lander = lander
         self.part, self.dragging = PLACE, False
@@ -84,13 +84,9 @@ class Hand(VirtualPointer):
         tip = tail + _PER_SPEED * min(speed, FASTEST)
         return (x + tail * way[0], y + tail * way[1]), (x + tip * way[0], y + tip * way[1])
 
-    def used(self, pointer: Point | None) -> bool:
-        """Whether it holds the lander, or the mouse points at a part to take."""
-        return self.dragging or (pointer is not None and self.part_at(pointer) is not None)
-
     def part_at(self, point: Point) -> int | None:
         """Return the part that the mouse would take at a point, if any."""
-        if not self._lander.at_hand:
+        if not (self._lander.at_hand and self.box.collidepoint(point)):
             return None
         if math.dist(point, self.tilt_knob) <= _REACH:
             return TILT

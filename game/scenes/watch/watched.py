@@ -32,7 +32,7 @@ from game.world.stage import Stage
 SPEEDS: Final = (0.25, 1.0, 4.0)
 MANY: Final = 64  # landers, if there is more than one
 _SMALL: Final = 0.46  # size of each of many, to be seen through
-_SKY: Final = (-17.0, 17.0, 17.0)  # metres from left to right and up, that a map shows
+_SKY: Final = (-17.0, 17.0, 17.0)  # metres from left to right and up, that a camera at rest shows
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
@@ -93,12 +93,10 @@ class Watched:
         return 1.5 * _SMALL if self.many else 1.0
 
     def set_up_camera(self) -> None:
-        """Let the camera follow a single lander; with several, a map or reduced motion it rests."""
+        """Let the camera follow a single lander; with several, a map or reduced motion it rests on the whole sky."""
         self.camera, self.stage.calm = Camera(), self._context.settings.reduced_motion
-        if self.policy_map.on:
-            self.camera.cut(CameraTarget.around(*_SKY, self.clear))
-        elif self._follows:
-            self.camera.cut(framing.framed(self.env, clear=self.clear))
+        sky = CameraTarget.around(*_SKY, self.clear)
+        self.camera.cut(framing.framed(self.env, clear=self.clear) if self._follows else sky)
 
     @property
     def _follows(self) -> bool:

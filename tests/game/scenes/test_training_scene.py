@@ -36,7 +36,7 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
         for chart in (each for each in driver.top.charts.charts):
             chart.renew()
         driver.frames(1)
-        found = notes.page(driver.top.laid_on(driver.app.canvas)).notes
+        found = notes.page(driver.app.canvas.reading).notes
     return [note.text for note in found], [
         f"{one.text!r} on {other.text!r}"
         for number, one in enumerate(found)

@@ -16,7 +16,6 @@ from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context
 from game.ui.rows import ChoiceRow
-from game.world.camera import Camera
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
@@ -181,13 +180,16 @@ def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watchi
 
 def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
     watch = scene(watching)
-    assert watch.world.camera.view(1.0).zoom != 1
+    before = watch.world.camera.shot
     watching.key(pygame.K_ESCAPE)
     watching.app.context.settings.reduced_motion = True
     watching.key(pygame.K_ESCAPE)
     assert scene(watching) is watch
     watching.frames(5)
-    assert watch.world.camera.view(1.0) == Camera().view(1.0)
+    rests = watch.world.camera.shot
+    assert rests != before
+    watching.frames(60)
+    assert watch.world.camera.shot == rests
 
 
 def test_another_language_is_spoken_at_once(watching: Driver, written: list[str]):
