@@ -87,7 +87,10 @@ class WorldScene(FormScene, ABC):
             self._panel = pygame.FRect(box.left, box.top, wide, min(self.side.height + _INSIDE, box.height))
             self.free.width = self._panel.left - 2 * STEP
         self.head.lay_out(pygame.FRect(left, _TOP, self.free.width - 2 * left, foot - _TOP), canvas.scale)
-        self.free.top, self.free.height = _TOP + self.head.height, foot - _PADS - _TOP - self.head.height
+        top = _TOP + self.head.height
+        if self.side.rows and view.height > view.width:  # a high window has more room below the panel than beside it
+            self.free.width, top = view.width, max(top, self._panel.bottom)
+        self.free.top, self.free.height = top, foot - _PADS - top
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         view = canvas.view
