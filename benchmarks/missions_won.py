@@ -21,11 +21,13 @@ import numpy as np
 
 from ai.lander.environment import OBSERVATION_SCALE, LanderEnv, Outcome
 from ai.lander.missions import MISSIONS, Mission
+from ai.lander.push import KEYS
 from game.core.assets import ASSETS_DIR
-from game.flight.flight import DECISION_STEPS, Recording, StickHolder
+from game.flight.flight import Recording, StickHolder
 from game.flight.flight_file import Record, write
 from game.flight.logbook import describe
-from game.flight.replay import ReplayedFlight
+from game.flight.networks import DECISION_STEPS
+from game.flight.replay import replayed
 
 SLOTS = 320
 BEST = 32
@@ -104,11 +106,11 @@ def search(mission: Mission, generations: int, enough: float, steps: int, rng: n
 
 def keep(name: str, found: Found, steps: int) -> None:
     """Write a flight down as the game does, a decision being so many steps."""
-    actions = [action for action in found.actions for _ in range(steps)]
-    hands = [StickHolder.NETWORK] * len(actions)
-    flight = ReplayedFlight(Recording(0, "random", mission=name, actions=actions, hands=hands))
+    pushes = [KEYS[action] for action in found.actions for _ in range(steps)]
+    hands = [StickHolder.NETWORK] * len(pushes)
+    flight = replayed(Recording(0, "random", mission=name, pushes=pushes, hands=hands))
     while not flight.over:
-        flight.step(0)
+        flight.step()
     x, y, angle = flight.poses.now[0].tolist()
     folder = ASSETS_DIR / "flights"
     folder.mkdir(exist_ok=True)

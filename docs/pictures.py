@@ -46,7 +46,7 @@ from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
 HELD = 12  # frames that a key is held
-EIGHT_UNITS = {5: pygame.K_n, 30: pygame.K_RIGHT, 60: pygame.K_RIGHT, 90: pygame.K_RIGHT}  # of chapter 2, tried
+EIGHT_UNITS = {5: pygame.K_RETURN, 30: pygame.K_RIGHT, 60: pygame.K_RIGHT, 90: pygame.K_RIGHT}  # of chapter 2, tried
 
 
 def lesson(context: Context) -> LessonScene:
@@ -89,6 +89,7 @@ SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {
     "cockpit": Settings(help="guide", three_pads=True),
+    "train": Settings(slow_runs=False, lesson_offered=True),
 }
 
 MOVING = "flight"

@@ -5,12 +5,15 @@ import re
 import runpy
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from ai.lander.rewards import Situation
+from ai.pilots import CRASHED, FLYING
 from ai.pilots.child import PAY, load
 
 ROOT = Path(__file__).parents[1]
@@ -130,10 +133,9 @@ def test_the_stack_comes_to_rest(capsys: pytest.CaptureFixture[str]):
 
 def test_the_pay_that_goes_wrong_is_a_pay():
     pay, _ = load(PAY, "pay.py", (EXAMPLES / "pay_that_goes_wrong.py").read_text())
-    question = np.zeros((18, 2))
-    question[9 + 6] = 4  # steps flown
-    question[9 + 4] = [0, 2]  # the second has crashed
-    assert pay(question) == pytest.approx([4 / 60, 4 / 60 - 10])
+    before = Situation(*np.zeros((9, 2), int))
+    after = replace(before, steps=np.array([4, 4]), outcome=np.array([FLYING, CRASHED]))
+    assert pay((before, after)) == pytest.approx([4 / 60, 4 / 60 - 10])
 
 
 @pytest.mark.slow

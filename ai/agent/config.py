@@ -13,31 +13,32 @@ from ai.nn.activations import ACTIVATIONS
 class AgentConfig(Knobs):
     """Settings of an agent, whatever it learns; `ai.training.config` adds those of the run around it.
 
-    The defaults are what a file means that does not name a setting, as it was saved before there was that choice.
+    The defaults are the preset *modern*.
     """
 
     # fmt: off
-    learning_rate: float = knob(2e-3, "Learning rate: how far each step moves the weights.",
+    learning_rate: float = knob(3e-3, "Learning rate: how far each step moves the weights.",
                                 "learning", low=1e-5, high=1.0, log=True, live=True)
     final_learning_rate: float = knob(3e-4, "Final learning rate, reached in a straight line over the schedule.",
                                       "learning", low=1e-6, high=1.0, log=True, live=True)
     discount: float = knob(0.985, "Discount γ: how much a reward one decision later is worth.",
                            "learning", low=0.8, high=0.9999, live=True)
-    n_step: int = knob(10, "n-step return: rewards summed before the network's own estimate takes over.",
+    n_step: int = knob(8, "n-step return: rewards summed before the network's own estimate takes over.",
                        "learning", low=1, high=20)
-    batch_size: int = knob(256, "Batch size: memories in each learning step.", "learning", low=8, high=1024, live=True)
-    gradient_steps: int = knob(12, "Gradient steps after each decision of all landers.",
+    batch_size: int = knob(128, "Batch size: memories in each learning step.", "learning", low=8, high=1024, live=True)
+    gradient_steps: int = knob(16, "Gradient steps after each decision of all landers.",
                                "learning", low=1, high=32, live=True)
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
     gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient allowed.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
-    schedule_decisions: int = knob(600_000, "Decisions in which learning rate and τ fall and touchdown limits tighten.",
+    schedule_decisions: int = knob(100_000, "Decisions in which learning rate and τ fall and touchdown limits tighten.",
                                    "learning", low=1_000, high=10_000_000, log=True)
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
                                    offers=((16, 16), (32, 32), (64, 64), (128, 128), (256, 256), (64, 64, 64)))
-    activation: str = knob("relu", "Activation function of the hidden layers.", "network", choices=tuple(ACTIVATIONS))
+    activation: str = knob("leaky_relu", "Activation function of the hidden layers.", "network",
+                           choices=tuple(ACTIVATIONS))
     layer_normalisation: bool = knob(True, "Normalise each layer's inputs: steadier learning.", "network")
     dueling: bool = knob(False, "Dueling network: state value and advantages estimated apart.", "network")
     normalise_inputs: bool = knob(False, "Scale observations to running mean 0 and standard deviation 1.",
@@ -59,15 +60,15 @@ class AgentConfig(Knobs):
     success_batch_size: int = knob(32, "Batch size of the second pass, in memories.",
                                    "memory", low=4, high=512, live=True, needs="success_pass")
 
-    target_judges: bool = knob(True, "The target network judges next states: steadier. Off, the newest does: faster.",
+    target_judges: bool = knob(False, "The target network judges next states: steadier. Off, the newest does: faster.",
                                "target", live=True)
-    double: bool = knob(True, "Double Q-learning: one network chooses, the other judges.",
+    double: bool = knob(False, "Double Q-learning: one network chooses, the other judges.",
                         "target", live=True, needs="target_judges")
     target_update_interval: int = knob(1, "Gradient steps between two updates of the target network.",
                                        "target", low=1, high=10_000, log=True, live=True)
     tau: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
                       "target", low=0.0001, high=1.0, log=True, live=True)
-    final_tau: float = knob(1.0, "Target update rate after the schedule, as a share of τ.",
+    final_tau: float = knob(0.05, "Target update rate after the schedule, as a share of τ.",
                             "target", low=0.01, high=1.0, log=True, live=True)
     fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)
 
@@ -76,7 +77,7 @@ class AgentConfig(Knobs):
                               "exploration", low=0.0, high=1.0, live=True)
     epsilon_decay: float = knob(1.0, "Factor on ε after each episode; 1 leaves it to the next knob.",
                                 "exploration", low=0.9, high=1.0, live=True)
-    epsilon_decisions: int = knob(40_000, "Decisions over which ε falls in a straight line; 0 for none.",
+    epsilon_decisions: int = knob(15_000, "Decisions over which ε falls in a straight line; 0 for none.",
                                   "exploration", low=0, high=10_000_000, live=True)
     epsilon_spread: float = knob(0.7, "Spread ε over the landers: at 1, from ε for the first up to 1 for the last.",
                                  "exploration", low=0.0, high=1.0, live=True)

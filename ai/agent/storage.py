@@ -42,7 +42,8 @@ AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
 _ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
-KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
+KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, *_OF_A_RUN), {**_ALONE.folders, LAST: _ALONE})
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
@@ -105,6 +106,8 @@ def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) 
     """Make an agent as the file of settings and counts describes it."""
     described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, VERSION)
     settings = read_as(_Described, described).config
+    if missing := AgentConfig.names() - settings.keys():
+        raise ValueError(f"settings are missing: {', '.join(sorted(missing))}")
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
     features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
     agent = make(features, actions, AgentConfig.from_json(settings))

@@ -141,11 +141,12 @@ def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., A
 def _paid_by(training: Any, path: Path) -> Callable[[], None]:
     """Let a file of the user's own pay a run; return what ends its process. Raises ValueError."""
     from ai.lander.environment import LanderEnv
-    from ai.pilots.own import pay_by
+    from ai.pilots.own import OwnPay
 
     if not isinstance(training.env, LanderEnv):
         raise ValueError("--pay is for landers")
-    return pay_by(training.env, path)
+    training.env.pay = pay = OwnPay(path)
+    return pay.close
 
 
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
@@ -208,8 +209,8 @@ def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None
 
     keeper, line_at = Keeper(training, output), time.monotonic() + _LINE_SECONDS
     with cli.progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
-        for progress in limit.run(training):
-            share, words = limit.share(training), str(progress)
+        for _ in limit.run(training):
+            share, words = limit.share(training), str(training)
             bar.update(int(_PARTS * share) - bar.n)
             bar.set_postfix_str(words, refresh=False)
             if bar.disable and time.monotonic() >= line_at:

@@ -19,7 +19,7 @@ from ai.lander.free_flight import FreeFlight
 from ai.lander.ground import Ground
 from ai.lander.judging import judge
 from ai.lander.moment import Moment
-from ai.lander.rewards import REWARDS, RewardWeights, Situation
+from ai.lander.rewards import REWARDS, Pay, RewardWeights, Situation
 from ai.lander.rules import (
     ACTION_NAMES,
     ACTION_SHARES,
@@ -65,6 +65,7 @@ class LanderEnv:
     Attributes:
         params, ground, conditions, limits, weights: as given; numbers of all but ground and weights may be arrays (n,).
         curriculum: which spawn is drawn from, by landings.
+        pay: pays for a decision in place of the usual parts, if given; these go on being reported beside it.
         strictness: share of the limits of a touch, as pilots observe them, that holds.
         landings: landings so far, in all flights.
         streams: the Generator from which each slot's flights are drawn, n of them; can be replaced at any time.
@@ -89,6 +90,7 @@ class LanderEnv:
         limits: Limits = LIMITS,
         conditions: Conditions = CALM,
         weights: RewardWeights | None = None,
+        pay: Pay | None = None,
     ) -> None:
         for name, number in (("num_envs", num_envs), ("frame_skip", frame_skip)):
             if isinstance(number, bool) or not isinstance(number, int | np.integer) or number < 1:
@@ -99,7 +101,7 @@ class LanderEnv:
         self.curriculum = spawn if isinstance(spawn, Curriculum) else Curriculum(((0, spawn),))
         self.params, self.limits, self.conditions = params, limits, conditions
         self.ground = ground or Ground.flat(params)
-        self.weights, self.strictness, self.landings = weights or RewardWeights(), 1.0, 0
+        self.weights, self.pay, self.strictness, self.landings = weights or RewardWeights(), pay, 1.0, 0
         self.streams = np.random.default_rng(seed).spawn(num_envs)
         self.world, self.lander, self.pad_bodies = craft.build(num_envs, params, self.ground)
 
@@ -284,7 +286,8 @@ class LanderEnv:
         truncated = self.outcome == LATE
         return StepResult(
             observation=self.observe(),
-            reward=np.add.accumulate(parts)[-1],  # one by one, in their order: NumPy's sum takes them in another
+            # One by one, in their order: NumPy's sum takes them in another.
+            reward=self.pay(before, after) if self.pay else np.add.accumulate(parts)[-1],
             terminated=(self.outcome != FLYING) & ~truncated,
             truncated=truncated,
             outcome=after.outcome,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.environment import Doubles, Ints
+from ai.environment import Doubles, Floats, Ints
 from ai.lander.rules import CRASHED, FLYING, LANDED, OUT, engines_switched
 
 if TYPE_CHECKING:
@@ -98,6 +98,7 @@ def _ending(before: Situation, after: Situation) -> Doubles:
     return ending
 
 
+Pay = Callable[[Situation, Situation], Floats]  # what landers earn, (n,), from before to after a decision
 Part = Callable[[RewardWeights, Situation, Situation], NDArray[Any]]  # of the situations before and after a decision
 
 REWARDS: Final[dict[str, Part]] = {

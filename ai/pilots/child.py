@@ -1,8 +1,6 @@
 """The process of a player's file: it loads the file as a module, and answers one question after another.
 
-The file has the main thread to itself, as any program has: two more threads speak to whoever asks. In come questions,
-each a number and an array, or None, which asks at which line the file is. Out come `READY`, `ANSWER` and `PROBLEM`,
-each with the number of the last question, and `AT` with a line.
+The file has the main thread to itself, as any program has; one more thread says at which line it is, whenever asked.
 """
 
 from __future__ import annotations
@@ -15,10 +13,8 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable
-from dataclasses import fields
 from multiprocessing.connection import Connection
 from pathlib import Path
-from queue import SimpleQueue
 from threading import Thread, main_thread
 from typing import Any, Final
 
@@ -27,34 +23,35 @@ import numpy as np
 from ai.lander.rewards import Situation
 from ai.lander.rules import NUM_ACTIONS
 
-READY, ANSWER, PROBLEM, AT = "ready", "answer", "problem", "at"
 ACT, PAY = "act", "pay"  # what a file is asked for
 _WORDS: Final = 300  # characters of a problem
-_PARTS: Final = fields(Situation)
 
-Answer = Callable[[Any], Any]  # an array to an array
+Answer = Callable[[Any], Any]  # to observations (n, 9), or to the situations before and after a decision
 
 
-def serve(link: Connection, path: str, source: str, kind: str) -> None:
-    """Run the file, and answer until nobody asks any more."""
+def serve(link: Connection, where: Connection, path: str, source: str, kind: str) -> None:
+    """Run the file, and answer until nobody asks any more.
+
+    A question is a number and what `Answer` takes. An answer is the number of the last question, 0 before any, what
+    the file gave, and what went wrong instead: a line and words. Loaded, it gives whether it takes many at once.
+    """
     _stand_alone(path)
-    questions: SimpleQueue[tuple[int, Any]] = SimpleQueue()
-    replies: SimpleQueue[tuple[Any, ...]] = SimpleQueue()
-    Thread(target=_listen, args=(link, path, questions, replies), daemon=True).start()
-    Thread(target=_tell, args=(link, replies), daemon=True).start()
-    number, answer = 0, None
-    while True:
+    Thread(target=_tell_where, args=(where, path), daemon=True).start()
+    number, answer, alive = 0, None, True
+    while alive:
+        given, wrong = None, (0, "")
         try:
             if answer is None:
-                answer, many = load(kind, path, source)
-                replies.put((READY, number, many))
+                answer, given = load(kind, path, source)
             else:
-                number, question = questions.get()
-                replies.put((ANSWER, number, answer(question)))
+                number, question = link.recv()
+                given = answer(question)
         except BaseException as error:  # the file may raise whatever it likes and whenever: its signals come here too
-            replies.put((PROBLEM, number, *problem(error, path)))
-            if answer is None:
-                questions.get()  # of a file that is not loaded, nothing is asked
+            wrong, alive = problem(error, path), answer is not None
+        try:
+            link.send((number, given, *wrong))
+        except OSError:
+            return
 
 
 def _stand_alone(path: str) -> None:
@@ -70,25 +67,14 @@ def _stand_alone(path: str) -> None:
     sys.argv = [path]
 
 
-def _listen(link: Connection, path: str, questions: SimpleQueue[Any], replies: SimpleQueue[Any]) -> None:
-    """Receive: an endless loop can say where it is, and ends too once nobody asks any more."""
+def _tell_where(where: Connection, path: str) -> None:
+    """Say at which line an endless loop is; end it too once nobody asks any more."""
     try:
         while True:
-            question = link.recv()
-            if question is not None:
-                questions.put(question)
-                continue
+            where.recv()
             stack = traceback.walk_stack(sys._current_frames()[main_thread().ident or 0])
-            replies.put((AT, next((line for frame, line in stack if frame.f_code.co_filename == path), 0)))
+            where.send(next((line for frame, line in stack if frame.f_code.co_filename == path), 0))
     except (EOFError, OSError):
-        os._exit(0)
-
-
-def _tell(link: Connection, replies: SimpleQueue[Any]) -> None:
-    try:
-        while True:
-            link.send(replies.get())
-    except OSError:
         os._exit(0)
 
 
@@ -164,18 +150,13 @@ def actions(given: Any, count: int, name: str) -> Any:
 
 
 def _paying(pay: Callable[..., Any]) -> Answer:
-    def answer(rows: Any) -> Any:
-        before, after = (
-            Situation(
-                *(row.astype(np.intp) if part.type == "Ints" else row for part, row in zip(_PARTS, half, strict=True))
-            )
-            for half in rows.reshape(2, len(_PARTS), -1)
-        )
+    def answer(situations: tuple[Situation, Situation]) -> Any:
+        before, after = situations
         given = pay(before, after.actions, after)
-        found, count = _array(given), rows.shape[1]
+        found, count = _array(given), len(after.steps)
         if found.dtype.kind not in "biuf" or found.shape != (count,) or not np.isfinite(found).all():
             raise AnswerError(f"pay must return {count} finite numbers, and returned {_shown(given)}")
-        return found.astype(float)
+        return found.astype(np.float32)
 
     return answer
 

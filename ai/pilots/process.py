@@ -17,26 +17,22 @@ from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
+from ai.files import CONTROLS, read_text
+from ai.pilots.child import ACT, serve
 
-from ai.environment import Doubles, Floats, Ints
-from ai.files import CONTROLS
-from ai.lander.rewards import Situation
-from ai.pilots.child import ACT, ANSWER, AT, PROBLEM, READY, serve
-
+LARGEST: Final = 1_000_000  # bytes of a file
 _TURN: Final = 0.1  # seconds after which a wait looks whether the process is still there
 
 
 class PilotError(ValueError):
-    """What is wrong with a player's file, in words; `line` of it is 0 where no line is to blame."""
+    """What is wrong with a player's file, in words, with the line of it that is to blame, if one is."""
 
     def __init__(self, words: str, line: int = 0) -> None:
         super().__init__(f"line {line}: {words}" if line else words)
-        self.line = line
 
 
 class PilotProcess:
-    """A process that runs a file's source, and answers with its `act` or its `pay`.
+    """A process that runs a file as it is now, and answers with its `act` or its `pay`.
 
     Every method but `close` returns at once, or within the seconds that it is given; they raise PilotError for what is
     wrong with the file, and once the process has ended. `many` says whether the file has `act_many`, once it is ready.
@@ -44,23 +40,22 @@ class PilotProcess:
 
     many = False
 
-    def __init__(self, path: Path, source: str, kind: str = ACT) -> None:
+    def __init__(self, path: Path, kind: str = ACT) -> None:
+        path, source = path.absolute(), source_of(path)
         context = get_context("spawn")
-        self._link, theirs = context.Pipe()
+        (self._link, theirs), (self._where, there) = context.Pipe(), context.Pipe()
         self._asked, self._answered = 0, -1  # numbers of questions: that of loading the file is 0
-        self._answer: Any = None
-        self._line: int | None = None
         # No daemon, as such a process may have no children of its own: closed when this is collected, or at the end.
-        self._process = context.Process(target=serve, args=(theirs, str(path), source, kind))
+        self._process = context.Process(target=serve, args=(theirs, there, str(path), source, kind))
+        self.close = Finalize(self, _end, (self._process, self._link, self._where), exitpriority=1)
         try:
             with _uninterrupted():
                 self._process.start()
         except OSError as error:
-            self._link.close()
-            raise PilotError(f"its process could not be started: {error.strerror or error}") from error
+            raise self._ended(f"its process could not be started: {error.strerror or error}") from error
         finally:
             theirs.close()
-        self.close = Finalize(self, _end, (self._process, self._link), exitpriority=1)
+            there.close()
 
     def ready(self, seconds: float = 0.0) -> bool:
         """Whether nothing is under way: the file is loaded, and the last question answered."""
@@ -70,32 +65,11 @@ class PilotProcess:
                 return False
         return True
 
-    def act(self, observation: Floats, seconds: float) -> Ints | None:
-        """Return actions (n,) for observations (n, 9); None if they took too long, and will never be used."""
-        actions: Ints | None = self._ask(np.array(observation, np.float32), seconds)
-        return actions
+    def ask(self, question: Any, seconds: float) -> Any:
+        """Return actions (n,) for observations (n, 9), or the pay (n,) for the situations before and after a decision.
 
-    def pay(self, before: Situation, after: Situation, seconds: float) -> Doubles | None:
-        """Return the pay (n,) of a decision; None if that took too long."""
-        pay: Doubles | None = self._ask(np.array([*vars(before).values(), *vars(after).values()], float), seconds)
-        return pay
-
-    def late(self, words: str, seconds: float = 0.1) -> PilotError:
-        """End the process, which took too long; return that in words, with the line at which the file was."""
-        until, self._line = time.monotonic() + seconds, None
-        with suppress(PilotError, OSError):
-            self._link.send(None)
-            while self._line is None and self._receive(until):
-                pass
-        self.close()
-        return PilotError(f"{words}: its process was ended", self._line or 0)
-
-    @property
-    def gone(self) -> bool:
-        """Whether the process has ended, or was closed."""
-        return self._process.exitcode is not None
-
-    def _ask(self, question: Any, seconds: float) -> Any:
+        None if that took too long; the answer will never be used.
+        """
         until = time.monotonic() + seconds
         if not self.ready(seconds):  # one that came too late before
             return None
@@ -106,10 +80,22 @@ class PilotProcess:
             self._link.send((self._asked, question))
         except OSError as error:
             raise self._ended() from error
-        while self._answered < self._asked:
-            if not self._receive(until):
-                return None
-        return self._answer
+        return self._given if self.ready(until - time.monotonic()) else None
+
+    def late(self, words: str, seconds: float = 0.1) -> PilotError:
+        """End the process, which took too long; return that in words, with the line at which the file was."""
+        line = 0
+        with suppress(EOFError, OSError):
+            self._where.send(None)
+            if self._where.poll(seconds):
+                line = self._where.recv()
+        self.close()
+        return PilotError(f"{words}: its process was ended", line)
+
+    @property
+    def gone(self) -> bool:
+        """Whether the process has ended, or was closed."""
+        return self._process.exitcode is not None
 
     def _receive(self, until: float) -> bool:
         """Take in what the process says next, and return whether it said something in time; raises PilotError."""
@@ -119,25 +105,28 @@ class PilotProcess:
                     raise self._ended()
                 if time.monotonic() >= until:
                     return False
-            kind, number, *said = self._link.recv()
+            self._answered, self._given, line, words = self._link.recv()
         except (EOFError, OSError) as error:
             raise self._ended() from error
-        if kind == AT:
-            self._line = number
-            return True
-        self._answered = number
-        if kind == PROBLEM:
-            line, words = said
+        if words:
             raise PilotError(CONTROLS.sub(" ", words), line)
-        if kind == READY:
-            (self.many,) = said
-        elif kind == ANSWER:
-            (self._answer,) = said
+        if not self._answered:
+            self.many = self._given
         return True
 
-    def _ended(self) -> PilotError:
+    def _ended(self, words: str = "its process has ended") -> PilotError:
         self.close()
-        return PilotError("its process has ended")
+        return PilotError(words)
+
+
+def source_of(path: Path) -> str:
+    """Return what stands in a file; raises PilotError for one that cannot be read."""
+    try:
+        return read_text(path, LARGEST)
+    except OSError as error:
+        raise PilotError(f"the file cannot be read: {error.strerror or error}") from error
+    except ValueError as error:
+        raise PilotError("the file is no text in UTF-8") from error
 
 
 @contextmanager
@@ -156,11 +145,13 @@ def _uninterrupted() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _end(process: BaseProcess, link: Connection) -> None:
+def _end(process: BaseProcess, *links: Connection) -> None:
     """End a process, and where the system has groups of processes, what it has started."""
-    with suppress(OSError):
-        process.kill()
-        if process.pid and hasattr(os, "killpg"):
-            os.killpg(process.pid, signal.SIGKILL)
-    process.join()
-    link.close()
+    if process.pid:
+        with suppress(OSError):
+            process.kill()
+            if hasattr(os, "killpg"):
+                os.killpg(process.pid, signal.SIGKILL)
+        process.join()
+    for link in links:
+        link.close()

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from threading import Thread
 from typing import Annotated, Final
 
 from ai.files import Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
@@ -75,14 +71,3 @@ class Shelf:
             return read_lines(Measured, self.results, _LARGEST)[0]
         except FileNotFoundError:
             return []
-
-
-def edit(path: Path) -> None:
-    """Open a file in the system's editor; raises OSError if there is none. It never runs the file."""
-    if sys.platform == "win32":
-        os.startfile(path, "edit")  # "open" would run it
-        return
-    command = ["open", "-t"] if sys.platform == "darwin" else ["xdg-open"]
-    void = subprocess.DEVNULL
-    editor = subprocess.Popen([*command, str(path)], stdin=void, stdout=void, stderr=void, start_new_session=True)
-    Thread(target=editor.wait, daemon=True).start()

@@ -74,11 +74,11 @@ class Flown(NamedTuple):
 
     def landed(self, row: int = -1) -> float:
         """Return the share of the last hundred flights that landed, at a row; 0 before any has ended."""
-        return float(np.nan_to_num(self.history["success"][row])) if len(self.history) else 0.0
+        return float(np.nan_to_num(self.history["success_rate"][row])) if len(self.history) else 0.0
 
     def landed_after(self) -> float:
         """Decisions of each lander until a hundred flights landed as `LANDS` asks; infinite if they never did."""
-        reached = np.flatnonzero(self.history["success"] >= LANDS)
+        reached = np.flatnonzero(self.history["success_rate"] >= LANDS)
         return float(self.history["decisions"][reached[0]]) / self.config.num_envs if len(reached) else float("inf")
 
 
@@ -95,7 +95,7 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | 
     run = RecentCurves(other.history, other.config)
     if values_run_away(run) or loss_explodes(run):
         return "runs_away"
-    if np.nan_to_num(other.history["success"]).max(initial=0.0) < _NEVER:
+    if np.nan_to_num(other.history["success_rate"]).max(initial=0.0) < _NEVER:
         return "never"
     in_time = other.landed_after() <= _LATER * needed
     return "as_well" if in_time and other.landed() >= healthy.landed() - _WORSE else "later"

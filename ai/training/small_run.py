@@ -21,10 +21,11 @@ from ai.training.config import Config
 
 # Plain deep Q-learning: a hard copy of the target network every 100 gradient steps, as Mnih et al. 2015 had it.
 SMALL_RUN: Final = Config(
-    learning_rate=3e-3, final_learning_rate=3e-3, discount=0.99, n_step=1, batch_size=64, gradient_steps=4, cost="mse",
-    hidden=(32, 32), layer_normalisation=False, replay_size=20_000, learning_starts=300, mirror=False, double=False,
-    target_update_interval=100, tau=1.0, fly_target=False, epsilon_decisions=8_000, epsilon_spread=0.0, num_envs=16,
-    steadiness=0.0, reward_weights=RewardWeights(),
+    learning_rate=3e-3, final_learning_rate=3e-3, schedule_decisions=600_000, discount=0.99, n_step=1, batch_size=64,
+    gradient_steps=4, cost="mse", hidden=(32, 32), activation="relu", layer_normalisation=False, replay_size=20_000,
+    learning_starts=300, mirror=False, target_judges=True, target_update_interval=100, tau=1.0, final_tau=1.0,
+    fly_target=False, epsilon_decisions=8_000, epsilon_spread=0.0, num_envs=16, steadiness=0.0,
+    reward_weights=RewardWeights(),
 )  # fmt: skip
 RECENT: Final = 40  # latest flights whose share of landings is shown
 TESTED: Final = 12  # landers that are tested

@@ -12,6 +12,7 @@ from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.settings import HELP, Settings
+from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import sentence, who
 
@@ -30,7 +31,7 @@ class Rules(Protocol):
     bar: str
     alone: bool
 
-    def medal(self, flight: Flight) -> int:
+    def medal(self, flight: Flight[Crew]) -> int:
         """Return the medal of a flight that is over: 3 for gold, 2, 1, and 0 for none."""
 
 
@@ -53,7 +54,7 @@ class Credit:
 
     """
 
-    def __init__(self, flight: Flight, settings: Settings, rules: Rules) -> None:
+    def __init__(self, flight: Flight[Crew], settings: Settings, rules: Rules) -> None:
         self._flight, self._settings, self._rules = flight, settings, rules
         self._used: set[str] = set()  # assists of the steps so far
         self._shared = False
@@ -61,34 +62,33 @@ class Credit:
 
     def prepare(self) -> None:
         """Apply the player's settings to the next step, and remember what they are."""
-        self._flight.steered = self._settings.one_switch
         self._used |= self._chosen
         self.pace = min(self.pace, self._settings.pace)
 
     def follow(self) -> None:
         """Record whether the step just flown was shared."""
-        self._shared |= self._flight.shared
+        self._shared |= self._flight.chooser.shared
 
     # Who flies
 
     @property
     def helped(self) -> bool:
         """Whether a co-pilot has shared the stick at any time, or will in the next step."""
-        return self._shared or (self._flight.shared and not self._flight.over)
+        return self._shared or (self._flight.chooser.shared and not self._flight.over)
 
     @property
     def who(self) -> str:
         """Who flies when the person does not: the network, or their own pilot by its name."""
-        return who(self._flight.network)
+        return who(self._flight.chooser.network)
 
     @property
     def header(self) -> str:
         """Text that says who flies."""
         flight = self._flight
-        if flight.hand is StickHolder.NETWORK:
+        if flight.chooser.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
-        if flight.shared and flight.copilot:
-            return texts.YOU_SHARE[help_word(flight.copilot.assist)]
+        if flight.chooser.shared and flight.chooser.copilot:
+            return texts.YOU_SHARE[help_word(flight.chooser.copilot.assist)]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
 
     # What made it easier
@@ -133,7 +133,7 @@ class Credit:
             return self._rules.bar
         if self.helped and flight.share < 1.0:
             return "helped"
-        if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
+        if flight.share < 1.0 or flight.chooser.hand is StickHolder.NETWORK:
             return "handed_over"
         return "" if _OWN_HANDS.issuperset(self._named) else "assists"
 

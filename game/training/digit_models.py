@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Final
 
 from ai.digits.classifier import DIGITS_FILE, NETWORK
-from ai.digits.training import read_summary
 from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
@@ -40,18 +39,6 @@ class SavedDigitModel:
     def versions(self) -> list[Path]:
         """Return the folders of all versions of the network, the one with all fixes first."""
         return [*reversed(self.fixed()), self.folder]
-
-    @property
-    def said(self) -> str:
-        """Text on its accuracy, from its small file; empty if unknown."""
-        try:
-            summary = read_summary(self.folder)
-        except (OSError, ValueError):
-            return ""
-        for part, words in ((summary.test, texts.DIGIT_MODEL_TESTED), (summary.held_out, texts.DIGIT_MODEL_HELD_OUT)):
-            if part is not None:
-                return words.format(part=part)
-        return ""
 
 
 class DigitModels(Collection[SavedDigitModel]):

@@ -199,7 +199,7 @@ class ReplayScene(WorldScene):
         head.text(lambda: self._titles()[1])
         head.add(self._write_moment)
         foot.add(lambda cursor: readouts.write_readouts(cursor, self._readouts))
-        flown = recording.actions, recording.hands
+        flown = [push.action for push in recording.pushes], recording.hands
         self._strip = foot.widget(Timeline(texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go))
         more = self.context.settings.is_open(_OPEN)
         race = texts.FRIEND_ANSWER if self.friend else texts.LOGBOOK_RACE
@@ -209,7 +209,7 @@ class ReplayScene(WorldScene):
         rows: list[ButtonRow | ChoiceRow] = [ButtonRow(label, press, size=SMALL) for label, press in words]
         self._export_word = rows[-1]
         rows += [self.playback.choice()] if more else []
-        rows.append(ButtonRow(texts.TRAIN_MORE[more], self._open_more, size=SMALL))
+        rows.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
         rows[-1].key = "more"
         foot.flow(rows)
 

@@ -165,7 +165,7 @@ class PhysicsScene(PanelScene):
         words: list[tuple[str, OnPress]] = [
             (texts.PHYSICS_START_VALUES, self._reset),
             (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
-            (texts.PHYSICS_MORE[self.more], self._open_more),
+            (texts.MORE[self.more], self._open_more),
         ]
         buttons = column.words(words)
         self._inside = buttons[1]

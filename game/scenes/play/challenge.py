@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from ai.flights.recording import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
@@ -19,12 +19,13 @@ from game.core import texts
 from game.core.catalogue import capital
 from game.core.settings import Settings
 from game.flight import sharing
+from game.flight.choosers import Alone, Crew
 from game.flight.credit import Credit
-from game.flight.flight import Flight, start_of
+from game.flight.flight import Flight, Recording, begin
 from game.flight.flight_file import Entry, Record
 from game.flight.networks import Network, Policy, titled, who
 from game.flight.outcomes import OutcomeCard
-from game.flight.replay import FlightReplay, ReplayedFlight, flown_elsewhere
+from game.flight.replay import FlightReplay, flown_elsewhere, replayed
 from game.input.controls import Controls
 from game.scenes.play.ghost import Ghost, Named
 
@@ -87,9 +88,9 @@ class Challenge:
         """Return what the player has chosen for its next flight."""
         return None
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
         """Begin a flight, of the kind of start `spawn` if there are several; `network` is the one to hand over to."""
-        return Flight(seed, network)
+        return begin(Recording(seed, "random"), network)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the ghost that flies beside it; None without one."""
@@ -112,11 +113,11 @@ class Challenge:
         """Whether the craft goes on to hang, although it is touched."""
         return False
 
-    def keeps_stick(self, flight: Flight) -> bool:
+    def keeps_stick(self, flight: Flight[Crew]) -> bool:
         """Whether the player cannot hand over the stick now."""
         return False
 
-    def follow(self, flight: Flight) -> str:
+    def follow(self, flight: Flight[Crew]) -> str:
         """Follow a step of the flight; return the name of a sound to play, empty for none."""
         return ""
 
@@ -124,20 +125,20 @@ class Challenge:
         """Store the pilot's progress in the settings; return whether there was any to store."""
         return False
 
-    def titles(self, flight: Flight, network: Network, *, whole: bool) -> tuple[str, str]:
+    def titles(self, flight: Flight[Crew], network: Network, *, whole: bool) -> tuple[str, str]:
         """Return the kind of a flight, and its name; `whole` is for all that can be said of it."""
-        named = whole and flight.network and self.elsewhere
+        named = whole and flight.chooser.network and self.elsewhere
         flown = texts.WITH_NETWORK.format(network=titled(network.name)) if named else ""
         return texts.DIAL_JOIN.join(filter(None, (self.title, flown))), self.line
 
-    def sentence(self, flight: Flight, controls: Controls, *, waiting: bool, stuck: bool) -> str | None:
+    def sentence(self, flight: Flight[Crew], controls: Controls, *, waiting: bool, stuck: bool) -> str | None:
         """Return the one sentence of the flight, in the player's keys; None for the usual one.
 
         `waiting` is whether the craft hangs until a control is touched, `stuck` whether one must first be let go.
         """
         return None
 
-    def asides(self, flight: Flight) -> Sequence[str]:
+    def asides(self, flight: Flight[Crew]) -> Sequence[str]:
         """Return what else is to be read while the craft waits."""
         return ()
 
@@ -146,18 +147,18 @@ class Challenge:
 
     # After a flight
 
-    def note_end(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
         """Take note of a flight that has just ended, before its card or the next flight."""
 
     def again(self) -> bool:
         """Whether a finished flight restarts by itself, without a card."""
         return False
 
-    def medal(self, flight: Flight) -> int:
+    def medal(self, flight: Flight[Crew]) -> int:
         """Return the medal of a finished flight if it counts: 3 for gold, 2 silver, 1 bronze, 0 none."""
         return 0
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
         """Return the outcome card of a finished flight, with what this challenge adds to it."""
         return card
 
@@ -207,7 +208,7 @@ class Duel(_Beside):
         self.title = texts.DUEL
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        return Ghost(Flight(seed, self._rival), self._name)
+        return Ghost(Flight(Recording(seed, "random"), Alone(self._rival)), self._name)
 
 
 class Race(_Beside):
@@ -217,11 +218,11 @@ class Race(_Beside):
         super().__init__(name)
         self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        return Flight(seed, network, **start_of(self._recording))
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
+        return begin(self._recording, network)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        return Ghost(ReplayedFlight(self._recording), self._name)
+        return Ghost(replayed(self._recording), self._name)
 
 
 class ContinuedFlight(Challenge):
@@ -240,15 +241,18 @@ class ContinuedFlight(Challenge):
         self.title, self.opening = texts.FLY_ON, texts.FLY_ON_BEGIN
         self.line = texts.FLY_ON_LINE.format(seconds=self._step / 60)
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        return self._put(Flight(seed, network, **start_of(self._recording)))
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
+        flight = begin(self._recording, network)
+        self._put(flight)
+        return flight
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        return Ghost(self._put(ReplayedFlight(self._recording)), self._name)
+        flight = replayed(self._recording)
+        self._put(flight)
+        return Ghost(flight, self._name)
 
-    def _put(self, flight: Flight) -> Flight:
+    def _put(self, flight: Flight[Any]) -> None:
         flight.put(self._moment, self._recording, self._step)
-        return flight
 
 
 class FlownMission(Challenge):
@@ -280,29 +284,30 @@ class FlownMission(Challenge):
         if self._landed:
             self.again_hint = texts.MISSION_AGAIN
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
-        return Flight(seed, network, mission=self.name, easing=self.easing)
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
+        return begin(Recording(seed, "random", mission=self.name, easing=self.easing), network)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         if self._rival:
-            return Ghost(ReplayedFlight(self._rival), self._rival_name)
-        return Ghost(Flight(seed, network, mission=self.name), partial(who, network)) if network else None
+            return Ghost(replayed(self._rival), self._rival_name)
+        start = Recording(seed, "random", mission=self.name)
+        return Ghost(Flight(start, Alone(network)), partial(who, network)) if network else None
 
     def following(self) -> Challenge | None:
         return self._following() if self._following else None
 
-    def note_end(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
         """Keep a landing as the ghost of the next try."""
         if flight.outcome is Outcome.LANDED and flight.share > 0:
             self._rival, self._rival_name, self._landed = flight.recording, lambda: texts.GHOST_BEFORE, True
             self.word()
 
-    def medal(self, flight: Flight) -> int:
+    def medal(self, flight: Flight[Crew]) -> int:
         if flight.outcome is not Outcome.LANDED:
             return 0
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
         """Return the card with the medal beside the points, and what the next medal asks, or why there is none."""
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
@@ -312,7 +317,7 @@ class FlownMission(Challenge):
         card = replace(card, score=texts.DIAL_JOIN.join(filter(None, (card.score, earned))), ring=credit.together)
         return replace(card, medal=credit.medal, reason=self._missing(flight)) if credit.counts else card
 
-    def _missing(self, flight: Flight) -> str:
+    def _missing(self, flight: Flight[Crew]) -> str:
         """Return what the next medal asks."""
         medal = self.medal(flight)
         if medal == 3:

@@ -6,12 +6,13 @@ from datetime import date
 
 from ai.flights.verification import DAILY
 from game.core import texts
+from game.flight.choosers import Crew
 from game.flight.credit import Credit
 from game.flight.days import Attempt, Days
-from game.flight.flight import Flight
+from game.flight.flight import Flight, Recording, begin
 from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
-from game.flight.replay import ReplayedFlight
+from game.flight.replay import replayed
 from game.scenes.play.challenge import Challenge
 from game.scenes.play.ghost import Ghost
 
@@ -43,18 +44,18 @@ class DailyStart(Challenge):
             self.bar = "day_again"
         self.word()
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
         """Begin a flight with three pads among hills."""
         self._begun, self.stake = False, None
         self._look()
-        return Flight(self.seed, pads=3, easing=self.easing)
+        return begin(Recording(self.seed, "random", 3, easing=self.easing))
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the player's best flight of the day as a ghost, in practice only."""
         record = self._days.best_flight(self._day) if self.bar else None
-        return Ghost(ReplayedFlight(record.recording), lambda: texts.DAILY_GHOST) if record else None
+        return Ghost(replayed(record.recording), lambda: texts.DAILY_GHOST) if record else None
 
-    def follow(self, flight: Flight) -> str:
+    def follow(self, flight: Flight[Crew]) -> str:
         """Note the first attempt as soon as it begins; it is lost with another start."""
         if not (self._begun or self.bar):
             self._days.note(Attempt(self.line))
@@ -62,7 +63,7 @@ class DailyStart(Challenge):
         self._begun = True
         return ""
 
-    def note_end(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
         self.stake = None
 
     def written(self, entry: Entry) -> str:

@@ -22,13 +22,14 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
+from game.flight.choosers import Alone, Crew
 from game.flight.credit import Credit
-from game.flight.flight import Flight, Recording
+from game.flight.flight import Flight, Recording, begin
 from game.flight.flight_file import Entry
 from game.flight.logbook import best_descent
 from game.flight.networks import Policy, sentence, who
 from game.flight.outcomes import OutcomeCard
-from game.flight.replay import ReplayedFlight
+from game.flight.replay import replayed
 from game.scenes.play.challenge import Challenge
 from game.scenes.play.ghost import Ghost
 from game.world.camera import ClearArea, View
@@ -76,7 +77,7 @@ class Descent(Challenge):
     def recall(self, entries: Iterable[Entry]) -> None:
         self.best = max(self.best, best_descent(entries))
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
         """Begin the next leg after a landing; otherwise begin a run."""
         if seed != self._seed or not self._landed:
             self._start_run(seed)
@@ -86,7 +87,7 @@ class Descent(Challenge):
         # The ground of the next leg, as it will be unless this one ends on a flat spot.
         self.ahead = leg_of(seed, LegStart(self.start.number + 1)).ground
         self.word()
-        return Flight(seed, network, leg=self.start)
+        return begin(Recording(seed, "random", leg=self.start), network)
 
     def _start_run(self, seed: int) -> None:
         """Begin a run; over the same ground as the last one, beside the longest so far."""
@@ -119,10 +120,11 @@ class Descent(Challenge):
         """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
         number = self.start.number
         if number <= len(self._before):
-            return Ghost(ReplayedFlight(self._before[number - 1]), lambda: texts.GHOST_BEFORE)
-        return Ghost(Flight(seed, network, leg=self.start), partial(who, network)) if network else None
+            return Ghost(replayed(self._before[number - 1]), lambda: texts.GHOST_BEFORE)
+        start = Recording(seed, "random", leg=self.start)
+        return Ghost(Flight(start, Alone(network)), partial(who, network)) if network else None
 
-    def note_end(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank."""
         env = flight.env
         self._flown.append(flight.recording)
@@ -148,12 +150,12 @@ class Descent(Challenge):
         """The next leg follows after every landing."""
         return self._landed
 
-    def follow(self, flight: Flight) -> str:
+    def follow(self, flight: Flight[Crew]) -> str:
         """Let the tank fill once the craft has landed."""
         self._since += flight.over
         return ""
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
         values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
         figures = tuple((label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True))

@@ -11,14 +11,16 @@ import pygame
 
 from ai.environment import Doubles
 from ai.flights.verification import landing_score
+from ai.lander.push import KEYS, Push
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
 from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
+from game.flight.choosers import Alone
 from game.flight.credit import ASSISTS, Credit, eased
-from game.flight.flight import Flight, StickHolder, start_of
+from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
 from game.flight.logbook import Records
@@ -108,17 +110,15 @@ class FlownFlight:
         self._network_here = self._shadow() if challenge.shadows and self._policy else None
         self.path_preview = PathPreview(self.flight, self._policy if challenge.guides else None)
 
-    def _shadow(self) -> Flight:
+    def _shadow(self) -> Flight[Alone]:
         """Return the network's own flight from the same start, flown unseen: the card tells its score."""
-        start = self.flight.recording
-        shadow = Flight(start.seed, self._policy, **start_of(start))
-        shadow.hand_over()
-        return shadow
+        assert self._policy is not None
+        return Flight(self.flight.recording, Alone(self._policy))
 
     @property
     def helps(self) -> bool:
         """Whether a network may help in this flight."""
-        return self.flight.shares and not self.credit.alone
+        return self.flight.chooser.shares and not self.credit.alone
 
     @property
     def stuck(self) -> bool:
@@ -136,7 +136,7 @@ class FlownFlight:
         self.network = network
         if not self.credit.alone:
             self._policy = network.policy
-            self.flight.change_network(network.policy)
+            self.flight.chooser.change_network(network.policy)
             self.path_preview.ask(self._policy if self.challenge.guides else None)
 
     # Time
@@ -147,24 +147,24 @@ class FlownFlight:
         self.scenery.animate()
         self.help_words.shown = max(0, self.help_words.shown - 1)
 
-    def due(self, action: int) -> bool:
+    def due(self, asked: Push) -> bool:
         """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
         self.pace.rate = self._settings.pace
-        if self._waits(action):
+        if self._waits(asked):
             self._help()
-            if self.flight.guard:
-                self.flight.guard.hang(action)
+            if self.flight.chooser.guard:
+                self.flight.chooser.guard.hang(self.flight, asked)
             self.path_preview.follow(waiting=True)
             return False
         return bool(self.pace.steps())
 
-    def _waits(self, action: int) -> bool:
+    def _waits(self, asked: Push) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
-        self._held_before &= bool(action)
-        touched, guard = bool(action) or not self.challenge.waits, self.flight.guard
-        ready = guard is None or guard.ready  # or nobody would keep it from harm at first
+        self._held_before &= asked != Push()
+        touched, guard = asked != Push() or not self.challenge.waits, self.flight.chooser.guard
+        ready = guard is None or guard.ready(self.flight)  # or nobody would keep it from harm at first
         goes = touched and ready and not (self._held_before or self.challenge.holds)
-        if goes or self.flight.hand is StickHolder.NETWORK:
+        if goes or self.flight.chooser.hand is StickHolder.NETWORK:
             self.waiting = False
         return self.waiting
 
@@ -176,11 +176,11 @@ class FlownFlight:
     def _help(self) -> None:
         """Set the help of the next step from the settings, and have futures flown ahead once a guardian needs them."""
         flight = self.flight
-        flight.help(0.0 if self.credit.alone else ASSISTS[self.helped.help])
-        if flight.guard is None and flight.shared and (ahead := self.context.ahead()):
+        flight.chooser.help(0.0 if self.credit.alone else ASSISTS[self.helped.help])
+        if flight.chooser.guard is None and flight.chooser.shared and (ahead := self.context.ahead()):
             from game.flight.guard import Guard
 
-            flight.guard = Guard(flight, ahead)
+            flight.chooser.guard = Guard(flight.chooser, ahead)
 
     def prepare(self) -> None:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""
@@ -195,7 +195,7 @@ class FlownFlight:
         if self.ghost:
             self.ghost.step()
         if self._network_here:
-            self._network_here.step(0)
+            self._network_here.step()
         self.path_preview.follow(waiting=False)
         if not self._was_over:
             self._follow_flight()
@@ -227,7 +227,7 @@ class FlownFlight:
 
     def think(self, decisions: int) -> None:
         """Fly the six futures of the present moment some decisions further, for whoever asks."""
-        step = len(self.flight.recording.actions)
+        step = self.flight.at
         if self._policy is None or self.flight.over:
             return
         self.futures = self.futures or SixFutures(self._policy, self.flight.route)
@@ -273,7 +273,7 @@ class FlownFlight:
         rows = [(texts.CARD_BEST_HERE, texts.SCORE.format(count=best))] if best else []
         if shadow := self._network_here:
             while not shadow.over:
-                shadow.step(0)
+                shadow.step()
             score = landing_score(shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
             rows.append((texts.CARD_NETWORK.format(who=self.credit.who), words))
@@ -371,7 +371,7 @@ class FlownFlight:
     def _shown(self, *, whole: bool) -> list[str]:
         """Name the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
         if whole:
-            return [name for name in GAUGES if name != "thrust" or self.flight.recording.shares]
+            return [name for name in GAUGES if name != "thrust" or not set(self.flight.recording.pushes).issubset(KEYS)]
         return [*PILOT, *(["fuel"] if self.flight.env.conditions.tank < math.inf else [])]
 
     def _behind_panel(self, canvas: Canvas, view: View, pose: Doubles) -> bool:

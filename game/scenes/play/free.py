@@ -14,8 +14,9 @@ from ai.lander.environment import Outcome
 from ai.lander.spawns import LADDER, RUNGS
 from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
+from game.flight.choosers import Crew
 from game.flight.credit import Credit
-from game.flight.flight import Flight, StickHolder
+from game.flight.flight import Flight, Recording, StickHolder, begin
 from game.flight.flight_file import Entry
 from game.flight.logbook import ladder_rung
 from game.flight.networks import Network, Policy, titled
@@ -51,22 +52,22 @@ class FreeFlight(Challenge):
             return 3, "random"
         return 1, LADDER.spawn(max(0, self._settings.rung))  # progress can be put away during a flight
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
         pads, usual = self.chosen()
-        return Flight(seed, network, spawn or usual, pads=pads, easing=self.easing)
+        return begin(Recording(seed, spawn or usual, pads, easing=self.easing), network)
 
     def dial(self, settings: Settings) -> Settings:
         return settings
 
-    def titles(self, flight: Flight, network: Network, *, whole: bool) -> tuple[str, str]:
+    def titles(self, flight: Flight[Crew], network: Network, *, whole: bool) -> tuple[str, str]:
         """Return the rung or the number of pads, and who can take over."""
         helper = texts.WITH_NETWORK.format(network=titled(network.name)) if whole else ""  # else, a key says so
-        flown = helper if flight.network else texts.ALONE
+        flown = helper if flight.chooser.network else texts.ALONE
         if (rung := rung_of(flight)) is not None:
             return texts.LADDER_TITLE.format(number=rung + 1, count=COUNT), flown
         return texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown
 
-    def note_end(self, flight: Flight, credit: Credit) -> None:
+    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
         """Move a rung up after a landing, and down after two misses in a row.
 
         Only flights that the player has brought to their end move it, with help or without.
@@ -74,7 +75,7 @@ class FreeFlight(Challenge):
         rung, settings = rung_of(flight), self._settings
         if rung is None:
             return
-        mine, landed = flight.hand is StickHolder.HUMAN, flight.outcome is Outcome.LANDED
+        mine, landed = flight.chooser.hand is StickHolder.HUMAN, flight.outcome is Outcome.LANDED
         if mine and landed:
             settings.rung, self._misses = rung + 1, 0
         elif mine and not flight.intact:
@@ -83,13 +84,13 @@ class FreeFlight(Challenge):
                 settings.rung, self._misses = max(0, rung - 1), 0
         self._climbed = settings.rung != rung
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
         """Return the card, which says how the ladder was moved on."""
         rung, now = rung_of(flight), self._settings.rung
         if rung is None:
             return card
         # What a landing counts for, helped or not, is said once, by the line of the ladder.
-        mine = flight.hand is StickHolder.HUMAN or not card.good
+        mine = flight.chooser.hand is StickHolder.HUMAN or not card.good
         reason = texts.OUTCOMES[Outcome.LANDED.name][1] if card.good else card.reason
         return replace(card, reason=reason, rung=now, climb=_words(rung, now) if mine else texts.LADDER_NOT_FLOWN)
 
@@ -98,7 +99,7 @@ class FreeFlight(Challenge):
         return climbed
 
 
-def rung_of(flight: Flight) -> int | None:
+def rung_of(flight: Flight[Crew]) -> int | None:
     """Return on which rung a flight has begun, from 0; None if it was on none."""
     return LADDER.stage_of(flight.recording.spawn) if flight.recording.spawn in RUNGS else None
 

@@ -248,7 +248,7 @@ def _asides(flown: FlownFlight) -> list[str]:
 
 def _means(flown: FlownFlight) -> str:
     """Say what the help that is set means now."""
-    if flown.flight.copilot is None:
+    if flown.flight.chooser.copilot is None:
         return ""
-    guard = flown.flight.guard
+    guard = flown.flight.chooser.guard
     return dial_words(ASSISTS[flown.helped.help], guard.ahead.problem if guard else texts.FUTURES_NOT_YET)

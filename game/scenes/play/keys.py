@@ -19,7 +19,7 @@ _IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named whi
 def flight_actions(scene: PlayScene) -> list[Action]:
     """Return what keys do in flight."""
     challenge, flight = scene.challenge, scene.flight
-    taken = flight.hand is StickHolder.NETWORK
+    taken = flight.chooser.hand is StickHolder.NETWORK
     hints = {
         Command.HANDOVER: texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER,
         Command.CHOICES: texts.CHOICES_HINT if challenge.free else "",
@@ -27,7 +27,7 @@ def flight_actions(scene: PlayScene) -> list[Action]:
         Command.RETRY: texts.HINT_RETRY,
         Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
     }
-    if flight.over or not flight.network or challenge.keeps_stick(flight):
+    if flight.over or not flight.chooser.network or challenge.keeps_stick(flight):
         hints[Command.HANDOVER] = ""
     calm, mouse = scene.waiting or flight.over, scene.context.controls.mouse_in_use
     named = hints if calm else _IN_FLIGHT if mouse else ()

@@ -14,6 +14,7 @@ from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.explain.explained import Explained
 from game.flight import networks, own
+from game.flight.choosers import steered
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records, best_alone
@@ -135,14 +136,14 @@ class PlayScene(Scene):
         self._held_next += self._held_next > 0
         if self._held_next > _SKIP_ALL and self.challenge.next_hint:
             self._end_challenge()
-        action, shares = self._stick.read(self._across)
+        asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
-        due = self.flown.due(action)
+        due = self.flown.due(asked)
         if self.waiting:
             return None
         if due:
             self.flown.prepare()
-            self.flight.step(action, shares)
+            self.flight.step(steered(asked, self.flight.observation) if self._settings.one_switch else asked)
             self.flown.follow()
             self._follow_flight()
         self.flown.sound()
@@ -203,16 +204,16 @@ class PlayScene(Scene):
     def _hand_over(self) -> None:
         if self.challenge.keeps_stick(self.flight):
             return
-        if self.flight.hand_over():
-            self._sound.play("to_network" if self.flight.hand is StickHolder.NETWORK else "to_human")
-        elif self.flight.network is None and not self.flight.over:
+        if not self.flight.over and self.flight.chooser.hand_over():
+            self._sound.play("to_network" if self.flight.chooser.hand is StickHolder.NETWORK else "to_human")
+        elif self.flight.chooser.network is None and not self.flight.over:
             problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     @property
     def _lack(self) -> str:
         """Why the network, or the player's own pilot, cannot help; empty if it can, or if none is asked to."""
-        if not self.flight.shares or self.flight.copilot is not None:
+        if not self.flight.chooser.shares or self.flight.chooser.copilot is not None:
             return ""
         text = texts.DIAL_NEEDS if self.network.policy else texts.NO_NETWORK
         return text.format(name=self.network.name, problem=self.network.problem)

@@ -9,6 +9,7 @@ from typing import Final
 from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
+from game.flight.choosers import Crew
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry
 from game.flight.outcomes import OutcomeCard
@@ -36,7 +37,7 @@ class Sitting:
         """Count crashes anew."""
         self._crashes, self.offers = 0, False
 
-    def best_here(self, flight: Flight) -> int:
+    def best_here(self, flight: Flight[Crew]) -> int:
         return self._best_here.get(_start(flight), 0)
 
     def add(self, flown: FlownFlight) -> None:
@@ -48,7 +49,7 @@ class Sitting:
             self._best_here[here] = max(score, self.best_here(flown.flight))
             self._landed_before = True
         self._crashes = 0 if landed else self._crashes + (not flown.flight.intact)
-        there = flown.flight.copilot is not None and not flown.credit.alone
+        there = flown.flight.chooser.copilot is not None and not flown.credit.alone
         self.offers = self._crashes >= CRASHES and there and flown.helped.help == "off"
 
     def card(self, card: OutcomeCard) -> OutcomeCard:
@@ -58,5 +59,5 @@ class Sitting:
         return replace(card, advice=texts.HELP_OFFER) if self.offers else card
 
 
-def _start(flight: Flight) -> tuple[int, str, int]:
+def _start(flight: Flight[Crew]) -> tuple[int, str, int]:
     return flight.recording.seed, flight.recording.spawn, flight.recording.pads

@@ -18,8 +18,9 @@ from ai.lander.missions import FIRST
 from game.core import texts
 from game.core.settings import Settings
 from game.explain.readouts import yours
+from game.flight.choosers import Crew
 from game.flight.credit import Credit
-from game.flight.flight import Flight, StickHolder
+from game.flight.flight import Flight, Recording, StickHolder, begin
 from game.flight.networks import Policy, QPolicy, sentence, who
 from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
@@ -57,7 +58,7 @@ class Lesson:
     """
 
     name: str
-    done: Callable[[Flight], bool]
+    done: Callable[[Flight[Crew]], bool]
     steps: int
     start: tuple[float, float, float, float] = (17.0, 0.0, 0.0, 0.0)
     held: bool = True
@@ -68,16 +69,16 @@ class Lesson:
     guarded: bool = False
 
 
-def _stands_upright(flight: Flight) -> bool:
+def _stands_upright(flight: Flight[Crew]) -> bool:
     env = flight.env
     return bool(env.tilt[0] < _UPRIGHT[0] and abs(env.angular_velocity[0]) < _UPRIGHT[1])
 
 
-def _falls(flight: Flight) -> bool:
+def _falls(flight: Flight[Crew]) -> bool:
     return bool(flight.env.actions[0] == 0 and flight.env.velocity[0, 1] < -0.3)
 
 
-def _lands(flight: Flight) -> bool:
+def _lands(flight: Flight[Crew]) -> bool:
     return flight.outcome is Outcome.LANDED
 
 
@@ -135,7 +136,7 @@ class Tutorial(Challenge):
         """Let free flights follow."""
         self.through, self.fixed = True, False
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
         """Begin a flight at the current lesson, or one before it; without a network, leave out what needs one."""
         self._leave_out(network)
         self._number -= self.lesson.back
@@ -143,7 +144,7 @@ class Tutorial(Challenge):
         self._begun += 1
         self._done_for = self.praise = self._flown_for = 0
         self._over = self._saved = False
-        flight = Flight(seed, network, mission=FIRST.name, shares=self.lesson.guarded)
+        flight = begin(Recording(seed, "random", mission=FIRST.name), network, shares=self.lesson.guarded)
         height, sinks, angle, aside = self.lesson.start
         flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, angle, 0.0]]))
         flight.observation = flight.env.observe()
@@ -169,22 +170,22 @@ class Tutorial(Challenge):
         """The craft goes on to hang until help is turned on, where a lesson asks for that."""
         return self.lesson.guarded and self._help is not None and self._help.help == "off"
 
-    def keeps_stick(self, flight: Flight) -> bool:
+    def keeps_stick(self, flight: Flight[Crew]) -> bool:
         """A guard is shown only to who keeps the stick; what the network has taken over may be taken back."""
-        return self.lesson.guarded and not self.through and flight.hand is StickHolder.HUMAN
+        return self.lesson.guarded and not self.through and flight.chooser.hand is StickHolder.HUMAN
 
     # Progress
 
-    def follow(self, flight: Flight) -> str:
+    def follow(self, flight: Flight[Crew]) -> str:
         """Check whether the lesson is done; return the sound to play if so."""
         if self.through:
             return ""
-        self._leave_out(flight.network)
+        self._leave_out(flight.chooser.network)
         if flight.over and not self._over:
             self._why = self._reason(flight)
         self._over = flight.over
         self._flown_for += 1
-        self._saved |= flight.overridden and (flight.guard is None or flight.guard.saves)
+        self._saved |= flight.choice.overridden and (flight.chooser.guard is None or flight.chooser.guard.saves)
         if self.praise:
             self.praise -= 1
             if not self.praise:
@@ -192,9 +193,10 @@ class Tutorial(Challenge):
                 self._begin_lesson(self._number + 1)
                 self._why = texts.TUTORIAL_WATCHED if watched else ""
             return ""
-        if self.lesson.guarded and self._flown_for == _LONG and flight.hand is StickHolder.HUMAN:
-            flight.hand_over()  # kept from crashing by a co-pilot, one may hover without end
-        done = (flight.hand is (self.lesson.by or flight.hand) and self.lesson.done(flight)) or self._watched(flight)
+        if self.lesson.guarded and self._flown_for == _LONG and flight.chooser.hand is StickHolder.HUMAN:
+            flight.chooser.hand_over()  # kept from crashing by a co-pilot, one may hover without end
+        hand = flight.chooser.hand
+        done = (hand is (self.lesson.by or hand) and self.lesson.done(flight)) or self._watched(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
         if self._done_for < self.lesson.steps:
             return ""
@@ -204,16 +206,16 @@ class Tutorial(Challenge):
             self._end()
         return "" if flight.over else "choose"  # a landing has a sound of its own
 
-    def _watched(self, flight: Flight) -> bool:
+    def _watched(self, flight: Flight[Crew]) -> bool:
         """Whether the network has landed before the stick was taken back, which is as good: it was to be watched."""
-        by_network = flight.hand is StickHolder.NETWORK and flight.outcome is Outcome.LANDED
+        by_network = flight.chooser.hand is StickHolder.NETWORK and flight.outcome is Outcome.LANDED
         return self.lesson.name == "take_back" and by_network
 
-    def _reason(self, flight: Flight) -> str:
+    def _reason(self, flight: Flight[Crew]) -> str:
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
-        by_network = flight.hand is StickHolder.NETWORK
-        landed = sentence(texts.TUTORIAL_NETWORK_LANDED, who(flight.network))
+        by_network = flight.chooser.hand is StickHolder.NETWORK
+        landed = sentence(texts.TUTORIAL_NETWORK_LANDED, who(flight.chooser.network))
         return landed if by_network else texts.TUTORIAL_LANDED_EARLY
 
     def skip(self) -> None:
@@ -240,7 +242,7 @@ class Tutorial(Challenge):
         settings.first_flown |= self.flown
         return before != (settings.tutored, settings.first_flown)
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
         """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
         if not card.good:
             return replace(card, score="")
@@ -249,7 +251,7 @@ class Tutorial(Challenge):
             title, reason = texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED
         elif self.lesson.guarded and flight.share < 1:
             title = texts.TUTORIAL_GOOD["land"]
-            reason = texts.TUTORIAL_HELPED.format(who=who(flight.network), percent=100 - yours(flight.share))
+            reason = texts.TUTORIAL_HELPED.format(who=who(flight.chooser.network), percent=100 - yours(flight.share))
         elif self.lesson.guarded:
             reason = texts.TUTORIAL_NOT_NEEDED
         quality = card.quality if flight.share == 1 or not self.lesson.guarded else ""
@@ -257,7 +259,7 @@ class Tutorial(Challenge):
 
     # In words
 
-    def sentence(self, flight: Flight, controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
+    def sentence(self, flight: Flight[Crew], controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
         """Return the instruction, in the key names of the device in use."""
         if flight.over and self.through:
             return ""
@@ -272,14 +274,14 @@ class Tutorial(Challenge):
             main=controls.word(Held.MAIN),
             turn=turn,
             other=right if turned(env) > 0 else left,
-            who=who(flight.network),
+            who=who(flight.chooser.network),
             inward=right if env.position[0, 0] < 0 else left,
             hand_over=controls.word(Command.HANDOVER),
             more=texts.TUTORIAL_WHEEL if controls.mouse_in_use else controls.word(Command.FASTER),
         )
 
-    def _line(self, flight: Flight, waiting: bool, stuck: bool) -> str:
-        env, lesson, network = flight.env, self.lesson, flight.hand is StickHolder.NETWORK
+    def _line(self, flight: Flight[Crew], waiting: bool, stuck: bool) -> str:
+        env, lesson, network = flight.env, self.lesson, flight.chooser.hand is StickHolder.NETWORK
         usual, other = (*texts.TUTORIAL[lesson.name], "")[:2]
         if flight.over:
             if self._watched(flight):
@@ -323,5 +325,5 @@ class Tutorial(Challenge):
         """Return why the lesson restarts, until it has flown for a while; empty if it has not restarted."""
         return self._why if self._over or self._flown_for < _WHY_SHOWN else ""
 
-    def asides(self, flight: Flight) -> Sequence[str]:
+    def asides(self, flight: Flight[Crew]) -> Sequence[str]:
         return [self.why] if self.why and not flight.wrecked else []

@@ -158,7 +158,7 @@ class TrainingScene(FormScene, ABC):
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
         words = {
-            MORE: texts.TRAIN_MORE,
+            MORE: texts.MORE,
             CHARTS: texts.TRAIN_MORE_CHARTS,
             KNOBS: texts.TRAIN_MORE_KNOBS,
             INSIDE: texts.TRAIN_LOOK,

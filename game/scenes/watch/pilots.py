@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from threading import Thread
 from typing import Final
 
 from ai.pilots.own import LOADING
-from ai.pilots.shelf import Measured, Shelf, edit
+from ai.pilots.shelf import Measured, Shelf
 from game.core import texts
 from game.core.scene import Pop, Transition, push
 from game.core.worker import Worker, WorkerState
@@ -151,3 +155,14 @@ def _figures(measured: Measured) -> str:
     """Say in one line how a pilot flew."""
     landed, seconds, fuel = percent(measured.landed, 1), f"{measured.seconds:.1f}", f"{measured.fuel:.1f}"
     return texts.PILOTS_FIGURES.format(count=own.STARTS, landed=landed, seconds=seconds, fuel=fuel)
+
+
+def edit(path: Path) -> None:
+    """Open a file in the system's editor; raises OSError if there is none. It never runs the file."""
+    if sys.platform == "win32":
+        os.startfile(path, "edit")  # "open" would run it
+        return
+    command = ["open", "-t"] if sys.platform == "darwin" else ["xdg-open"]
+    void = subprocess.DEVNULL
+    editor = subprocess.Popen([*command, str(path)], stdin=void, stdout=void, stderr=void, start_new_session=True)
+    Thread(target=editor.wait, daemon=True).start()

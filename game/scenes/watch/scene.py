@@ -152,7 +152,7 @@ class WatchScene(WorldScene):
                 ButtonRow(texts.PAUSE_NEW_STARTS, self._begin_anew, size=SMALL),
                 ButtonRow(texts.PILOTS_OPEN, self._open_pilots, size=SMALL),
             ]
-        widgets.append(ButtonRow(texts.TRAIN_MORE[more], self._open_more, size=SMALL))
+        widgets.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
         widgets[-1].key = "more"
         choices = [widget for widget in widgets if isinstance(widget, ChoiceRow)]
         for choice, what in zip(choices, texts.EXPLAIN_CHOICES, strict=False):

@@ -33,8 +33,22 @@ def fed(config, count=40, seed=0):
     return agent
 
 
+def test_without_a_configuration_it_is_the_preset_modern():
+    agents = DeepQAgent(), DeepQAgent(config=PRESETS["modern"])
+    for agent in agents:
+        assert agent.config.to_json().items() <= PRESETS["modern"].to_json().items()
+        env, held = LanderEnv(256, 0), np.zeros(256, dtype=np.intp)
+        observation = env.reset()
+        for _ in range(31):  # that of which 5,000 memories come, and some steps of learning
+            held, flown = agent.train_step(env, observation, 0.5, held)
+            observation = env.reset(flown.ended)
+        assert agent.gradient_steps > 0
+    assert np.array_equal(agents[0].online.values, agents[1].online.values)
+    assert np.array_equal(agents[0].target.values, agents[1].target.values)
+
+
 def test_the_targets_of_many_memories_are_those_of_each_alone():
-    for changes in ({}, {"double": False}, {"target_judges": False}):
+    for changes in ({}, {"target_judges": True}, {"target_judges": True, "double": True}):
         agent, rng, count = DeepQAgent(3, 2, SMALL.changed(**changes)), np.random.default_rng(4), 2 * TOGETHER + 5
         agent.online.values = rng.normal(size=agent.online.values.shape)
         states = rng.normal(size=(count, 3)).astype(np.float32)

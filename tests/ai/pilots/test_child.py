@@ -96,15 +96,14 @@ def test_the_pay_of_the_examples_is_the_usual_pay():
         before = Situation.of(env)
         result = env.step(rng.choice([0, 3, 3, 4, 5], 64))
         after = Situation.of(env)
-        question = np.array([*vars(before).values(), *vars(after).values()], float)
-        assert pay(question) == pytest.approx(result.reward, abs=1e-3)
+        assert pay((before, after)) == pytest.approx(result.reward, abs=1e-3)
         ended += int(result.terminated.sum())
     assert ended
     assert len(REWARDS) == 9
 
 
 def test_a_pay_that_is_none_is_reported(subtests):
-    question = np.zeros((18, 2))
+    question = (Situation.of(LanderEnv(2)), Situation.of(LanderEnv(2)))
     for returned in ("None", "1.0", "after.tilt[:1]", "'ab'"):
         with subtests.test(returned):
             assert "pay must return 2 finite numbers" in problem_with(

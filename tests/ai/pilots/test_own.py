@@ -10,8 +10,8 @@ import pytest
 
 from ai.lander.environment import LanderEnv
 from ai.pilots import own
-from ai.pilots.own import MeasuredPilot, OwnPilot, pay_by
-from ai.pilots.process import PilotError
+from ai.pilots.own import MeasuredPilot, OwnPay, OwnPilot
+from ai.pilots.process import PilotError, source_of
 
 OBSERVATION = np.zeros((1, 9), np.float32)
 HELD = np.array([5])
@@ -22,8 +22,8 @@ class Fake:
 
     all: ClassVar[list["Fake"]] = []
 
-    def __init__(self, path: Path, source: str, kind: str) -> None:
-        self.does, self.gone = source, False
+    def __init__(self, path: Path) -> None:
+        self.does, self.gone = source_of(path), False
         Fake.all.append(self)
 
     def ready(self, seconds: float = 0.0) -> bool:
@@ -31,7 +31,7 @@ class Fake:
             raise PilotError("SyntaxError", 3)
         return self.does != "loading"
 
-    def act(self, observation, seconds):
+    def ask(self, observation, seconds):
         if self.does == "late":
             return None
         if self.does in ("raises", "dies"):
@@ -236,13 +236,13 @@ def test_measuring_keeps_the_order_of_landers_and_says_where_a_loop_is(tmp_path:
 def test_landers_are_paid_by_a_file(tmp_path: Path):
     path = tmp_path / "pay.py"
     path.write_text("def pay(before, action, after):\n    return after.steps * 2.0 + action")
-    env, usual = LanderEnv(3, 5), LanderEnv(3, 5)
-    close = pay_by(env, path)
+    pay = OwnPay(path)
+    env, usual = LanderEnv(3, 5, pay=pay), LanderEnv(3, 5)
     for each in (env, usual):
         each.reset()
     result, other = env.step([0, 3, 4]), usual.step([0, 3, 4])
     assert result.reward.tolist() == [8.0, 11.0, 12.0]
     assert np.array_equal(result.observation, other.observation)
-    close()
+    pay.close()
     with pytest.raises(PilotError, match="ended"):
         env.step([0, 0, 0])

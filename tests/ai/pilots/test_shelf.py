@@ -1,14 +1,11 @@
-"""The player's folder: new files, measurements, and the editor."""
+"""The player's folder: new files and measurements."""
 
 import errno
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from ai.files import writing
-from ai.pilots import shelf
 from ai.pilots.child import ACT, load
 from ai.pilots.own import MeasuredPilot
 from ai.pilots.shelf import TEMPLATE, Measured, Shelf
@@ -54,27 +51,6 @@ def test_measurements_are_kept_in_their_order_and_are_stale_once_the_file_was_sa
     assert (before.stale(path), after.stale(path)) == (True, False)
     path.unlink()
     assert not before.stale(path)
-
-
-def test_an_editor_is_opened_on_the_file_and_none_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    called = []
-
-    class Opened:
-        def __init__(self, command, **_):
-            called.append(command)
-
-        def wait(self):
-            pass
-
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setattr(subprocess, "Popen", Opened)
-    shelf.edit(tmp_path / "pilot.py")
-    assert called == [["xdg-open", str(tmp_path / "pilot.py")]]
-    monkeypatch.undo()
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(OSError, match="xdg-open"):
-        shelf.edit(tmp_path / "pilot.py")
 
 
 def test_the_template_nearly_lands_and_the_example_does(tmp_path: Path):

@@ -1,7 +1,5 @@
 """What schedules make of the settings."""
 
-from inspect import getgeneratorlocals
-
 import pytest
 
 from ai.agent.schedule import target_rate
@@ -19,7 +17,7 @@ TINY = Config(
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     run = LanderSession.live(TINY)
     messages = [next(run)]
-    training = getgeneratorlocals(run)["session"].training
+    training = run.training
     messages += [next(run) for _ in range(80)]
     assert isinstance(messages[0][-2], InForce) or any(isinstance(each, InForce) for each in messages[0])
     (said,) = [each for each in run.send(("change", "discount", 0.9)) if isinstance(each, InForce)]
@@ -43,4 +41,5 @@ def test_half_way_it_is_half_way():
 
 def test_without_a_last_share_the_target_s_rate_never_changes_by_a_bit():
     for tau in (1.0, 0.1, 0.005, 0.0003):
-        assert {target_rate(Config(tau=tau), decisions) for decisions in range(0, 900_000, 12_347)} == {tau}
+        config = Config(tau=tau, final_tau=1.0)
+        assert {target_rate(config, decisions) for decisions in range(0, 900_000, 12_347)} == {tau}

@@ -27,7 +27,7 @@ EARTH = GRAVITIES[1]
 @pytest.fixture
 def gallery(open_game: Open) -> Driver:
     driver = open_game(PhysicsScene)
-    driver.press_on(texts.PHYSICS_MORE[0])
+    driver.press_on(texts.MORE[0])
     return driver
 
 

@@ -18,7 +18,7 @@ from game.ui.context import Context
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.descent import stand_on
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import actions, play
 
 Open = Callable[..., Driver]
 
@@ -122,10 +122,10 @@ def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_
     total = descent(game).total
     game.key(pygame.K_TAB)
     game.frames(5)
-    assert play(game).flight.hand is StickHolder.NETWORK
+    assert play(game).flight.chooser.hand is StickHolder.NETWORK
     land(game)
     assert (descent(game).total, descent(game).streak, descent(game).legs) == (total, 0, 2)
-    assert play(game).flight.hand is StickHolder.HUMAN  # a relief, for one leg
+    assert play(game).flight.chooser.hand is StickHolder.HUMAN  # a relief, for one leg
     land(game)
     entries = Records(context.user_dir).entries()
     assert [entry.bar for entry in entries] == ["", "relieved", "relieved"]
@@ -186,9 +186,9 @@ def test_a_tap_within_one_frame_begins_a_flight_that_waits(open_game: Open, devi
     tap(driver, device)
     assert not play(driver).waiting
     driver.frames(3)
-    actions = play(driver).flight.recording.actions
-    assert actions[0] >= 3  # it fires for the step of the press, and no longer
-    assert all(action < 3 for action in actions[1:])
+    flown = actions(play(driver).flight)
+    assert flown[0] >= 3  # it fires for the step of the press, and no longer
+    assert all(action < 3 for action in flown[1:])
 
 
 def test_a_tap_switches_a_latched_engine_on_and_the_next_one_off(open_game: Open):
@@ -198,7 +198,7 @@ def test_a_tap_switches_a_latched_engine_on_and_the_next_one_off(open_game: Open
     for on in (True, False):
         tap(driver, "key")
         driver.frames(5)
-        assert (play(driver).flight.recording.actions[-1] >= 3) is on
+        assert (play(driver).flight.recording.pushes[-1].action >= 3) is on
 
 
 def test_the_tap_that_asks_for_another_start_does_not_begin_it(open_game: Open):

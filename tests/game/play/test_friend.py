@@ -135,7 +135,7 @@ def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, c
     driver = open_game()
     driver.post(pygame.DROPTEXT, text=code)
     driver.frames(2)
-    driver.press_on(texts.TRAIN_MORE[0])
+    driver.press_on(texts.MORE[0])
     driver.frames(2)
     driver.press_on(texts.CODE_COPY)
     assert clipboard[-1] == code

@@ -237,12 +237,12 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
     driver.key(pygame.K_n)
     driver.key(pygame.K_LEFT)
     driver.frames(20)
-    assert not play(driver).flight.shared
+    assert not play(driver).flight.chooser.shared
     assert play(driver).flight.env.velocity[0, 1] < -0.3
     play(driver).choose_network("modern")  # in a pause
     driver.frames(5)
-    assert play(driver).flight.network is not None
-    assert not play(driver).flight.shared
+    assert play(driver).flight.chooser.network is not None
+    assert not play(driver).flight.chooser.shared
 
 
 def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes_on(open_game: Open):
@@ -253,7 +253,7 @@ def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes
         driver.skip(10)
     assert first.outcome is Outcome.LANDED
     assert tutorial(driver).lesson.name == "land"
-    assert play(driver).flight.hand is StickHolder.HUMAN
+    assert play(driver).flight.chooser.hand is StickHolder.HUMAN
 
 
 def saved(driver: Driver) -> tuple[bool, bool]:

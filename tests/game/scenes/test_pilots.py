@@ -2,6 +2,8 @@
 
 import errno
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -33,13 +35,34 @@ def edited(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     return opened
 
 
+def test_an_editor_is_opened_on_the_file_and_none_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    called = []
+
+    class Opened:
+        def __init__(self, command, **_):
+            called.append(command)
+
+        def wait(self):
+            pass
+
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(subprocess, "Popen", Opened)
+    pilots.edit(tmp_path / "pilot.py")
+    assert called == [["xdg-open", str(tmp_path / "pilot.py")]]
+    monkeypatch.undo()
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(OSError, match="xdg-open"):
+        pilots.edit(tmp_path / "pilot.py")
+
+
 def scene(driver: Driver) -> WatchScene:
     assert isinstance(driver.top, WatchScene)
     return driver.top
 
 
 def open_pilots(driver: Driver) -> None:
-    driver.press_on(texts.TRAIN_MORE[0])
+    driver.press_on(texts.MORE[0])
     driver.frames(1)
     driver.press_on(texts.PILOTS_OPEN)
 
@@ -188,7 +211,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     play = driver.top
     assert isinstance(play, PlayScene)
     assert play.network.name == "pilot.py"
-    assert play.flight.copilot is None  # it has no values to share the stick by
+    assert play.flight.chooser.copilot is None  # it has no values to share the stick by
     context.settings.help = "guard"
     reading = Reading(driver, monkeypatch)
     driver.key(pygame.K_c)
@@ -200,7 +223,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     driver.wait(lambda: context.pilot and context.pilot.ready, 60)
     driver.key(pygame.K_TAB)
     driver.wait(lambda: play.flight.over, 60)
-    assert play.flight.guard is None
+    assert play.flight.chooser.guard is None
     assert play.credit.bar == "handed_over"
     path.write_text("def act(:")
     driver.wait(lambda: "SyntaxError" in driver.said, 30)

@@ -134,7 +134,7 @@ def scene(driver: Driver) -> WatchScene:
 def test_a_button_and_the_mouse_choose_the_map(open_game: Open, context: Context):
     driver = open_game(WatchScene, seed=2)
     assert scene(driver).flyer.network.name == "modern"
-    driver.press_on(texts.TRAIN_MORE[0])
+    driver.press_on(texts.MORE[0])
     driver.frames(2)
     driver.form.focus(driver.widget(texts.WATCH_MAP))
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
