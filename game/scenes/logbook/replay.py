@@ -223,7 +223,7 @@ class ReplayScene(WorldScene):
             self._scenery.cut()
 
     def _open_more(self) -> None:
-        self.context.settings.open(_OPEN)
+        self.context.settings.unfold(_OPEN)
         self.context.apply_settings()
 
     def _take_over(self) -> Transition | None:

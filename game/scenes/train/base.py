@@ -152,7 +152,7 @@ class TrainingScene(FormScene, ABC):
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        self._settings.open(name)
+        self._settings.unfold(name)
         self.context.apply_settings()
 
     def switch(self, column: Column, name: str) -> None:

@@ -190,7 +190,7 @@ class WatchScene(WorldScene):
         write_readouts(cursor, {name: shown[name] for name in PILOT})
 
     def _open_more(self) -> None:
-        self.context.settings.open(_OPEN)
+        self.context.settings.unfold(_OPEN)
         self.context.apply_settings()
 
     # What flies
