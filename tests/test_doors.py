@@ -24,7 +24,7 @@ OPENED = {
     "ai.sweep.trial": ({"path.read_bytes"}, "what it has just written"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
     "game.core.catalogue": ({"path.read_bytes"}, "comes with the program"),
-    "game.core.collection": ({"shutil.copytree"}, "of plain files alone, links as links"),
+    "game.core.shelf": ({"shutil.copytree"}, "of plain files alone, links as links"),
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
     "game.scenes.learn.one_file": ({"MICROLANDER.read_text"}, "comes with the program"),

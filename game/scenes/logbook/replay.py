@@ -17,8 +17,8 @@ from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Transition, push
+from game.core.shelf import LONGEST_NAME, fitting
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.shapes import Shape

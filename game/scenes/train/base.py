@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import pygame
 
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition
+from game.core.shelf import LibraryError
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, PANEL, SMALL, TITLE
@@ -322,7 +322,7 @@ class TrainingScene(FormScene, ABC):
         if not self._worth_keeping:
             return True
         runs = self.run.collection
-        name = runs.free_name(self._suggestion if self.run.runs else runs.kind.rescued())
+        name = runs.free_name(self._suggestion if self.run.runs else runs.rescued_name)
         if problem := self._save_as(name):
             self.context.note(problem)
         return not problem

@@ -16,8 +16,7 @@ from game.scenes.train import digits, scene
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE
 from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.train.scene import TrainScene
-from game.training.digit_models import DigitModels, runs_dir
-from game.training.library import Library
+from game.training.library import DigitModels, Library
 from game.training.record import put_beside
 from game.ui.context import Context
 from tests.ai.training.test_hints import HEALTHY
@@ -113,7 +112,7 @@ def test_a_run_beside_is_taken_away_by_its_row(open_game: Callable[..., Driver])
 
 def held(folder: Path) -> bool:
     """Whether somebody holds the place of the runs of landers, or of digits, that have no name."""
-    collections = Library(folder), DigitModels(runs_dir(folder))
+    collections = Library(folder), DigitModels(folder)
     free = [each.hold() for each in collections]
     for each in collections:
         each.release()
