@@ -54,8 +54,6 @@ class PlayScene(Scene):
 
     """
 
-    flows = True
-
     def __init__(
         self,
         context: Context,
