@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from ai.flights.recording import AS_IT_IS, Easing, Recording
-from ai.lander.environment import Cause, LanderEnv
+from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
 from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
@@ -136,6 +136,7 @@ class Words:
         stake: question before another start, and what would be lost.
         result: what is copied for a friend in place of the flight's code; empty for the code.
         marks: draws the challenge's own text and marks over the world; None for none.
+        card: adds to the card of a flight that has ended what is to be said; None for nothing.
 
     """
 
@@ -153,6 +154,7 @@ class Words:
     stake: tuple[str, str] = ("", "")
     result: str = ""
     marks: Callable[[Canvas, View, float], None] | None = None
+    card: Callable[[OutcomeCard], None] | None = None
 
 
 class Challenge:
@@ -181,8 +183,8 @@ class Challenge:
         """Follow a step of the flight, also after its end; return the name of a sound to play, empty for none."""
         return ""
 
-    def ended(self, flown: FlownFlight, card: OutcomeCard) -> None:
-        """Take note of a flight that has just ended, have it kept, and add to its card what is to be said."""
+    def ended(self, flown: FlownFlight) -> None:
+        """Take note of a flight that has just ended, and have it kept."""
         flown.keep()
 
 
@@ -265,7 +267,7 @@ class FlownMission(Challenge):
         goal = texts.MISSION_GOAL.format(fuel=self.mission.gold[0], seconds=self.mission.gold[1])
         again = texts.MISSION_AGAIN if self._landed else ""
         new = texts.MISSION_NEXT if self.rules.following else ""
-        return Words(texts.MISSION, line, goal, opening, again=again, new=new)
+        return Words(texts.MISSION, line, goal, opening, again=again, new=new, card=partial(self._add_to, flown))
 
     def start(self, wanted: Wanted) -> Start:
         recording = Recording(wanted.seed, "random", mission=self.name, easing=wanted.easing)
@@ -276,15 +278,18 @@ class FlownMission(Challenge):
             return Ghost(replayed(self._rival), self._rival_name)
         return Ghost(Flight(start, Alone(network)), partial(who, network)) if network else None
 
-    def ended(self, flown: FlownFlight, card: OutcomeCard) -> None:
-        """Keep a landing as the ghost of the next try; say what the next medal asks, or why there is none."""
+    def ended(self, flown: FlownFlight) -> None:
+        """Keep a landing as the ghost of the next try."""
         flown.keep()
+        if flown.flight.outcome is Outcome.LANDED and flown.flight.share > 0:
+            self._rival, self._rival_name, self._landed = flown.flight.recording, lambda: texts.GHOST_BEFORE, True
+
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
+        """Say what the next medal asks, or why there is none."""
         flight, credit = flown.flight, flown.credit
         if not card.good:
             card.advice = _advice(flight.env) or card.advice
             return
-        if flight.share > 0:
-            self._rival, self._rival_name, self._landed = flight.recording, lambda: texts.GHOST_BEFORE, True
         if not credit.counts and credit.bar == "assists":
             return
         earned = texts.MISSION_TOGETHER if credit.together else texts.MEDALS[credit.medal]

@@ -10,7 +10,6 @@ from ai.flights.verification import DAILY
 from game.core import texts
 from game.flight.days import Attempt, Days
 from game.flight.flight_file import Entry
-from game.flight.outcomes import OutcomeCard
 from game.flight.replay import replayed
 from game.scenes.play.challenge import Challenge, Start, Wanted, Words
 from game.scenes.play.ghost import Ghost
@@ -68,7 +67,7 @@ class DailyStart(Challenge):
         self._begun = True
         return ""
 
-    def ended(self, flown: FlownFlight, card: OutcomeCard) -> None:
+    def ended(self, flown: FlownFlight) -> None:
         """Note how the first attempt ended."""
         self.rules.staked = False
         entry = flown.keep()

@@ -111,7 +111,8 @@ class Descent(Challenge):
         return Words(
             texts.DESCENT_TITLE, texts.DESCENT_LEG.format(number=self.begins.number, kinds=kinds),
             texts.DIAL_JOIN.join(goal), texts.DESCENT_BEGIN if self.begins.number == 1 else hint,
-            again=texts.DESCENT_AGAIN, new=texts.DESCENT_NEW, marks=partial(self._draw, flown),
+            again=texts.DESCENT_AGAIN, new=texts.DESCENT_NEW,
+            marks=partial(self._draw, flown), card=partial(self._add_to, flown),
             stake=(texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)),
         )  # fmt: skip
 
@@ -120,7 +121,7 @@ class Descent(Challenge):
         self._since += flown.flight.over
         return ""
 
-    def ended(self, flown: FlownFlight, card: OutcomeCard) -> None:
+    def ended(self, flown: FlownFlight) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank; or end the run."""
         flight = flown.flight
         self._flown.append(flight.recording)
@@ -130,9 +131,8 @@ class Descent(Challenge):
         self.rules.bar = self.rules.bar if own else "relieved"
         if self._landed:
             self._count(flown, own=own)
+        self.rules.staked &= self._landed
         flown.keep(self.total)
-        if not self._landed:
-            self._end_run(flown, card)
 
     def _count(self, flown: FlownFlight, *, own: bool) -> None:
         env = flown.flight.env
@@ -146,8 +146,8 @@ class Descent(Challenge):
         self._gained = max(0.0, self._next.tank - max(0.0, self.begins.tank - float(env.fuel[0])))
         flown.ahead = leg_of(self._seed, self._next).ground
 
-    def _end_run(self, flown: FlownFlight, card: OutcomeCard) -> None:
-        self.rules.staked = False
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
+        """Say how far the run has come."""
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
         values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
         card.figures = tuple(

@@ -107,7 +107,6 @@ class FlownFlight:
         self.begun = False
         self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
         self.record: Record | None = None
-        self.card: OutcomeCard | None = None
         rules = challenge.rules
         self._policy = None if rules.alone else network.policy
         easing = eased(self._settings) if rules.eases else AS_IT_IS
@@ -271,24 +270,27 @@ class FlownFlight:
         self.copilot_panel.follow(self.flight, self.futures)
 
     def _end(self) -> None:
-        """Make the card, to which all that follow the flight add what they know."""
-        flight, credit, ending = self.flight, self.credit, self.ending
-        ending.whole = self.scenery.shot_of(self.path.places)
-        self.card = card = outcome_card(flight.env, flight.share)
-        card.who, card.place = credit.who, self.path.clear_place(ending.whole.view(1.0))
+        self.ending.whole = self.scenery.shot_of(self.path.places)
+        self.challenge.ended(self)
+
+    def make_card(self) -> OutcomeCard:
+        """Return the card, to which all that follow the flight have added what they know."""
+        flight, credit, whole = self.flight, self.credit, self.ending.whole
+        card = outcome_card(flight.env, flight.share)
+        card.who, card.place = credit.who, self.path.clear_place(whole.view(1.0)) if whole else 0.5
         credit.add_to(card)
         if credit.helped:
             card.stepped_in, card.watched = len(self.interventions.moments), self.interventions.watched(flight)
-        self.challenge.ended(self, card)
-        if not self.challenge.rules.again:
-            ending.card = card
+        if add := self.challenge.words(self).card:
+            add(card)
+        return card
 
     def _finish_card(self) -> None:
         """Add what takes longer than a frame to be known: how the network fares from there, and what would have saved.
 
         Until it is known, the card leaves it open.
         """
-        card = self.card
+        card = self.ending.card
         if self._shadow and card:
             score = landing_score(self._shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING

@@ -6,6 +6,7 @@ who has reached its top flies from anywhere, and has left it.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from ai.flights.recording import Recording
@@ -30,22 +31,24 @@ class FreeFlight(Challenge):
     def __init__(self, settings: Settings) -> None:
         super().__init__(free=True, fixed=False, eases=True, guides=True, shadows=True)
         self._settings = settings
-        self._misses = 0  # in a row, on this rung
+        self._misses = self._now = 0  # misses in a row, on this rung; the rung after the last flight
 
     def words(self, flown: FlownFlight) -> Words:
         flight = flown.flight
         title = texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT
         if (rung := rung_of(flight)) is not None:
             title = texts.LADDER_TITLE.format(number=rung + 1, count=COUNT)
-        return Words(title, "" if flight.chooser.network else texts.ALONE, opening=texts.BEGIN)
+        return Words(
+            title, "" if flight.chooser.network else texts.ALONE, opening=texts.BEGIN, card=partial(self._add_to, flown)
+        )
 
     def start(self, wanted: Wanted) -> Start:
         three, rung = self._settings.three_pads, max(0, self._settings.rung)  # progress can be put away in a flight
         usual = "random" if three else LADDER.spawn(rung)
         return Start(Recording(wanted.seed, wanted.spawn or usual, 3 if three else 1, easing=wanted.easing))
 
-    def ended(self, flown: FlownFlight, card: OutcomeCard) -> None:
-        """Move a rung up after a landing of the player's own, and down after two misses in a row; say so."""
+    def ended(self, flown: FlownFlight) -> None:
+        """Move a rung up after a landing of the player's own, and down after two misses in a row."""
         flown.keep()
         flight, settings = flown.flight, self._settings
         rung = rung_of(flight)
@@ -58,9 +61,18 @@ class FreeFlight(Challenge):
             self._misses += 1
             if self._misses >= MISSES:
                 settings.rung, self._misses = max(0, rung - 1), 0
-        card.rung = settings.rung
-        card.climb = _words(rung, settings.rung) if mine or not landed else texts.LADDER_NOT_FLOWN
-        if landed:  # what a landing counts for, helped or not, is said once, by the line of the ladder
+        if settings.rung != rung:
+            flown.context.apply_settings()
+        self._now = settings.rung
+
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
+        """Say how that has moved the player on."""
+        rung = rung_of(flown.flight)
+        if rung is None:
+            return
+        card.rung = self._now
+        card.climb = _words(rung, self._now) if flown.credit.own or not card.good else texts.LADDER_NOT_FLOWN
+        if card.good:  # what a landing counts for, helped or not, is said once, by the line of the ladder
             card.reason = texts.OUTCOMES[Outcome.LANDED.name][1]
 
 

@@ -18,6 +18,7 @@ from game.flight import networks, own, sharing
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records, ladder_rung
+from game.flight.outcomes import OutcomeCard
 from game.input.controls import Command, translate
 from game.scenes.play.card import ShownCard
 from game.scenes.play.challenge import Challenge, Duel, Words
@@ -101,6 +102,8 @@ class PlayScene(Scene):
 
     def reword(self) -> None:
         self.flown.reword()
+        if self.ending.card:
+            self.ending.card = self._make_card()
 
     def exit(self) -> None:
         self._stick.release()
@@ -148,13 +151,19 @@ class PlayScene(Scene):
         asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
         happened = self.flown.step(asked)
-        if happened.ended and self.ending.card:
-            if self._sitting.add(self.flown, self.ending.card):
+        if happened.ended and not self.challenge.rules.again:
+            self._sitting.add(self.flown)
+            self.ending.card = self._make_card()
+            if self._sitting.first:
                 self._sound.play("choose")
-            self.context.apply_settings()
         elif happened.retries:
             self.retry()
         return None
+
+    def _make_card(self) -> OutcomeCard:
+        card = self.flown.make_card()
+        self._sitting.add_to(card)
+        return card
 
     @property
     def words(self) -> Words:

@@ -24,6 +24,7 @@ class Sitting:
 
     Attributes:
         offers: whether the card in view offers help.
+        first: whether it is that of the player's first landing alone.
 
     """
 
@@ -32,33 +33,37 @@ class Sitting:
         self._landed_before = any(entry.landed and not entry.bar for entry in entries)
         self._best = best_alone(entries)
         self._best_here: dict[str, int] = {}  # scores of one's own landings by their starts
+        self.first = self._record = False
+        self._score = self._before = 0  # of the flight that has ended last, and the best from its start before
         self.begin()
 
     def begin(self) -> None:
         """Count crashes anew."""
         self._crashes, self.offers = 0, False
 
-    def add(self, flown: FlownFlight, card: OutcomeCard) -> bool:
-        """Count a flight that has ended, and add to its card; return whether it is the player's first landing alone."""
+    def add(self, flown: FlownFlight) -> None:
+        """Count a flight that has ended."""
         flight, landed = flown.flight, flown.flight.outcome is Outcome.LANDED
         self._crashes = 0 if landed else self._crashes + flight.wrecked
         there = flight.chooser.copilot is not None and not flown.credit.alone
         self.offers = self._crashes >= CRASHES and there and flown.helped.help == "off"
+        here, score = str(flight.recording.start()), landing_score(flight.env)
+        counts = landed and flown.credit.counts and flown.challenge.rules.kept
+        self._before, self._score = self._best_here.get(here, 0), score
+        if counts:
+            self._best_here[here] = max(score, self._before)
+        ranked = counts and flown.challenge.rules.free and rung_of(flight) is None
+        self._record = ranked and score > self._best > 0
+        self._best = max(self._best, score) if ranked else self._best
+        self.first, self._landed_before = counts and not self._landed_before, self._landed_before or counts
+
+    def add_to(self, card: OutcomeCard) -> None:
+        """Add to the card of that flight what those before it make of it."""
+        if self._before:
+            card.compared = {texts.CARD_BEST_HERE: texts.SCORE.format(count=self._before), **card.compared}
+        if self._record:
+            card.score = texts.SCORE_BEST.format(count=self._score)
+        if self.first:
+            card.title, card.reason = texts.FIRST_LANDING, texts.FIRST_LANDING_LINE
         if self.offers:
             card.advice = texts.HELP_OFFER
-        if not flown.challenge.rules.kept:
-            return False
-        here, score = str(flight.recording.start()), landing_score(flight.env)
-        if best := self._best_here.get(here, 0):
-            card.compared = {texts.CARD_BEST_HERE: texts.SCORE.format(count=best), **card.compared}
-        if not (landed and flown.credit.counts):
-            return False
-        if flown.challenge.rules.free and rung_of(flight) is None:
-            if score > self._best > 0:
-                card.score = texts.SCORE_BEST.format(count=score)
-            self._best = max(self._best, score)
-        self._best_here[here] = max(score, best)
-        first, self._landed_before = not self._landed_before, True
-        if first:
-            card.title, card.reason = texts.FIRST_LANDING, texts.FIRST_LANDING_LINE
-        return first

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -225,7 +226,10 @@ class Tutorial(Challenge):
             self._end()
         self._begin_lesson(self._number + beyond)
 
-    def ended(self, flown: FlownFlight, card: OutcomeCard) -> None:
+    def ended(self, flown: FlownFlight) -> None:
+        """Keep nothing."""
+
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
         """Make the final card: tutorial complete, or the crash of a player who flies it once more."""
         flight, card.score = flown.flight, ""
         if not card.good:
@@ -250,7 +254,8 @@ class Tutorial(Challenge):
         line = texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
         asides = [self.why] if self.why and not flight.wrecked else []
         following = "" if self.rules.through else texts.TUTORIAL_SKIP
-        return Words(texts.TUTORIAL_TITLE, line, sentence=said, asides=asides, next=following)
+        card = partial(self._add_to, flown)
+        return Words(texts.TUTORIAL_TITLE, line, sentence=said, asides=asides, next=following, card=card)
 
     def sentence(self, flight: Flight[Crew], controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
         """Return the instruction, in the key names of the device in use."""

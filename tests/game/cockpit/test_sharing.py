@@ -242,7 +242,7 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
     driver = fly(open_game, context, help="guide")
     start_at(driver, 0, 5, 0, -1.0, 0, 0)
     down(driver, pygame.K_RIGHT)
-    driver.frames(3)
+    driver.frames(12)
     driver.app.context.settings.help = "off"
     up(driver, pygame.K_RIGHT)
     start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)

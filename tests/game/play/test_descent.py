@@ -56,7 +56,7 @@ def test_a_landing_leads_to_the_next_leg_which_hangs_on_its_feet_with_what_is_in
     land(game)
     scene = play(game)
     assert scene.waiting
-    assert descent(game).start == scene.flight.recording.leg
+    assert descent(game).begins == scene.flight.recording.leg
     assert (descent(game).begins.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
     place = scene.flight.env.position.copy()
     game.frames(10)
@@ -107,7 +107,7 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     assert card.advice == texts.DESCENT_NEW_BEST
     ground = play(game).flight.recording.seed
     game.key(pygame.K_RETURN)
-    assert (descent(game).start, descent(game).best[0]) == (LegStart(), 1)
+    assert (descent(game).begins, descent(game).best[0]) == (LegStart(), 1)
     assert play(game).flight.recording.seed == ground
     assert play(game).flown.ghost.name == texts.GHOST_BEFORE
     land(game)

@@ -284,7 +284,7 @@ def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
     ):
         landed = SimpleNamespace(share=human, chooser=play(driver).flight.chooser)
         shown = replace(card, stepped_in=saved)
-        challenge.ended(SimpleNamespace(flight=landed), shown)
+        challenge._add_to(SimpleNamespace(flight=landed), shown)
         assert (shown.title, shown.reason) == (title, reason), (human, saved)
 
 
