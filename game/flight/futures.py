@@ -25,7 +25,6 @@ from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
 from game.core import texts
 from game.core.worker import Worker, WorkerState
-from game.core.worker_process import Turns
 
 _CORES: Final = 2  # with fewer, the futures would take the time that the window needs
 _AT_A_TIME: Final = 8  # decisions, of less than a millisecond together, between two looks for requests
@@ -173,7 +172,7 @@ class _Order:
             self._found[push] = number
 
 
-def fly_ahead() -> Turns:
+def fly_ahead() -> Generator[Iterable[Found] | None, object, None]:
     """Fly the futures of the latest request; for a `Worker`."""
     sys.setswitchinterval(_SWITCH)
     lookahead = Lookahead(DeepQAgent())

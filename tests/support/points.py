@@ -18,5 +18,6 @@ def point(**values: Any) -> Progress:
 
 def point_of(row: np.ndarray) -> Progress:
     """Return the progress whose numbers are a row of a history's points."""
-    numbers = row.tolist()
-    return Progress(*numbers[: -len(PARTS)], tuple(numbers[-len(PARTS) :]))
+    numbers = row[: -len(PARTS)].tolist()
+    named = zip((item.name for item in fields(Progress)), numbers, strict=False)
+    return point(**dict(named), parts=tuple(row[-len(PARTS) :].tolist()))

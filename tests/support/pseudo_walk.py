@@ -150,17 +150,16 @@ def noted(driver: Driver) -> None:
 
 
 def tried(*labels: str, steps: int) -> Happens:
-    """Return what tries a chapter: presses on widgets, each for so many steps; then it is asked why."""
+    """Return what tries a chapter: presses on widgets, each for so many steps."""
 
     def try_it(driver: Driver) -> None:
         scene = driver.top
         assert isinstance(scene, ChapterScene)
-        scene.turn_to(1)
+        scene.begin()
         for label in labels or ("",):
             if label:
                 driver.press_on(label)
             driver.skip(steps)
-        scene.turn_to(2)
         driver.frames(2)
 
     return try_it

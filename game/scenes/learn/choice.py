@@ -141,7 +141,8 @@ class ChoiceChapter(Chapter):
             self._path.append(self.env.position[0].copy())
         if self.over:
             self.results[self.first] = Came(self.came, bool(self.env.outcome[0] == Outcome.LANDED))
-            self.tried, self.changed = len(self.results) > 1, True
+            self.changed = True
+            self.found()
 
     def verdict(self) -> int | None:
         """Return what came of the lowest value; None before it and the highest were flown, and where that was lost."""

@@ -7,6 +7,8 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import pygame
+
 from ai.environment import Doubles
 from ai.flights.recording import AS_IT_IS
 from ai.flights.verification import landing_score
@@ -16,9 +18,8 @@ from game.core import texts
 from game.core.clock import TimeScale
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
-from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
+from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
 from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
 from game.flight.flight import Flight, StickHolder, begin
@@ -342,18 +343,15 @@ class FlownFlight:
         if not self.begun:
             reading = self.context.reading()
             if reading.scale > _LARGE * reading.whole.scale:  # the words reach over the Earth's usual place
-                self._earth = EARTH[0], max(EARTH[1], self.clear.head - _BELOW_HEAD + 1.3 * EARTH_RADIUS)
+                self._earth = self.clear.earth(EARTH, EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
 
     def _clear_of(self, head: Head) -> ClearArea:
         reading = self.context.reading()
-        scale, view = reading.whole.scale, reading.whole.view
-        low = head.write(reading, drawn=False) * reading.scale / scale + _BELOW_HEAD + min(view.top, 0.0)
-        right = float(VIEW_SIZE[0])
-        if self.thinks:
-            right = min(right, (self.copilot_panel.box(reading).left - 16) * reading.scale / scale + view.left)
-        return ClearArea(right=max(right, 0.4 * VIEW_SIZE[0]), head=max(low, ClearArea.head))
+        low, foot = head.write(reading, drawn=False) + _BELOW_HEAD, foot_of(reading, self._shown(whole=False))
+        right = self.copilot_panel.box(reading).left - 16 if self.thinks else reading.view.right
+        return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - low))
 
     @property
     def thinks(self) -> bool:
@@ -366,7 +364,9 @@ class FlownFlight:
 
         `low` is how far a card reaches down, in points, which the read-outs give way to.
         """
-        world, flight = canvas.whole, self.flight
+        flight, shown = self.flight, self._shown(whole=whole)
+        foot = foot_of(canvas, shown).top
+        world = canvas.above(canvas.view.bottom - foot)
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
         self.scenery.draw_land(world, alpha, self._earth)
@@ -389,8 +389,8 @@ class FlownFlight:
             draw_wind(world, view, pose, flight.env, self._clear_of(head))
         if marks := self.challenge.words(self).marks:
             marks(world, view, alpha)
-        if low * canvas.scale < world.surface.get_height() - READOUTS * world.scale:
-            draw_flight(world, self._readouts, self._shown(whole=whole))
+        if low < foot:
+            draw_flight(canvas, self._readouts, shown)
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, flight.share if self.begun else None, self.network.name)

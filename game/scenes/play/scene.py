@@ -55,8 +55,6 @@ class PlayScene(Scene):
 
     """
 
-    flows = True
-
     def __init__(
         self,
         context: Context,

@@ -1,4 +1,3 @@
-from inspect import getgeneratorlocals
 from itertools import count
 
 import numpy as np
@@ -122,7 +121,7 @@ def ruin(run):
 def test_a_ruined_network_can_go_back_to_its_best(data):
     run = DigitSession.live(RUINED, 4, data=data)
     next(run)
-    training = getgeneratorlocals(run)["session"].training
+    training = run.training
     ticks = count()
     training.clock = lambda: float(next(ticks))  # it is measured for a share of the time, whatever else runs here
     messages = ruin(run)

@@ -151,7 +151,7 @@ def trained(begin, config, name, value):
     """A run whose knob is turned to a value after some decisions, or None as it was."""
     run = begin(config)
     messages_in(run, 5)
-    training = run.gi_frame.f_locals["session"].training
+    training = run.training
     if name.startswith("success"):  # there are no landings yet to learn from: give it some
         cells = training.agent.replay.transitions
         picked = [part[:64].copy() for part in cells]
@@ -258,7 +258,7 @@ def test_a_full_disk_is_reported_once_and_training_goes_on(begin, tmp_path, monk
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     messages = messages_in(run, 90)
-    run.gi_frame.f_locals["session"].training.agent.replay.transitions.reward[:] = np.nan
+    run.training.agent.replay.transitions.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
         messages.extend(chain.from_iterable(islice(run, 200)))
     good = of(Checkpoint, messages)[-1]
@@ -273,7 +273,7 @@ def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(be
 def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     messages = messages_in(run, 78)
-    inside = run.gi_frame.f_locals["session"]
+    inside = run
     assert of(Saved, run.send(("save", tmp_path / "keep"))) == [Saved(tmp_path / "keep")]
     inside.training.agent.target.values[3] = np.nan  # behind the back of every check
     inside.training.agent.learn = lambda: None
@@ -354,7 +354,7 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     assert marks() == [dragged, rate, ("discount", 0.9, 0.82)], "the mark of before stays"
     for _ in range(3):
         turn("discount", 0.9)
-    session = run.gi_frame.f_locals["session"]
+    session = run
     assert session.history.setting_changes == history.setting_changes
     assert session.training.config.discount == 0.9
 
