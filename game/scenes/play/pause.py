@@ -100,7 +100,7 @@ class FlightPauseScene(PauseScene):
         """Add which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
         panel.aside(head.caption)
-        if not self._flight.challenge.free:
+        if not self._flight.challenge.rules.free:
             panel.text(head.name)
         for words in head.aside:
             panel.aside(words)
