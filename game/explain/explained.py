@@ -126,4 +126,4 @@ def _rows(canvas: Canvas, line: str) -> list[TooltipRow]:
 
 
 def _lines(canvas: Canvas, words: str) -> tuple[str, ...]:
-    return lines(words, canvas.grown(LABEL), "regular", _WIDTH, canvas.scale)
+    return lines(words, LABEL, "regular", _WIDTH, canvas.scale)

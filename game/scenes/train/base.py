@@ -63,7 +63,6 @@ class TrainingScene(FormScene, ABC):
 
     """
 
-    flows = True
     knobs: KnobsPanel
     charts: TrainingCharts
     panel: Panel
@@ -153,13 +152,13 @@ class TrainingScene(FormScene, ABC):
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        self._settings.open(name)
+        self._settings.unfold(name)
         self.context.apply_settings()
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
         words = {
-            MORE: texts.TRAIN_MORE,
+            MORE: texts.MORE,
             CHARTS: texts.TRAIN_MORE_CHARTS,
             KNOBS: texts.TRAIN_MORE_KNOBS,
             INSIDE: texts.TRAIN_LOOK,

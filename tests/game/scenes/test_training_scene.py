@@ -35,7 +35,7 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
         for chart in (each for each in driver.top.charts.charts):
             chart.renew()
         driver.frames(1)
-        found = notes.page(driver.top.laid_on(driver.app.canvas)).notes
+        found = notes.page(driver.app.canvas.reading).notes
     return [note.text for note in found], [
         f"{one.text!r} on {other.text!r}"
         for number, one in enumerate(found)
@@ -57,7 +57,7 @@ def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.Mo
 
 def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
     driver = open_game(TrainScene)
-    for name, words in ((MORE, texts.TRAIN_MORE), (CHARTS, texts.TRAIN_MORE_CHARTS), (INSIDE, texts.TRAIN_LOOK)):
+    for name, words in ((MORE, texts.MORE), (CHARTS, texts.TRAIN_MORE_CHARTS), (INSIDE, texts.TRAIN_LOOK)):
         driver.press_on(words[0])
         driver.frames(1)
         assert name in driver.saved()["opened"].split()
