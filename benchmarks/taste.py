@@ -117,14 +117,9 @@ def bring_up(person: Person, seed: int, choices: int) -> list[Flown]:
     """Return how a network flies after every tenth choice."""
     upbringing, rng, flown = Upbringing(seed=seed), np.random.default_rng([seed, 2]), []
     for choice in range(1, choices + 1):
-        while upbringing.question is None or not upbringing.resting:
-            upbringing.advance()
-            if upbringing.resting:
-                upbringing.scout()
-        upbringing.answer(person.answer(upbringing.question, rng))
+        upbringing.answer(person.answer(upbringing.ready(), rng))
         if choice % 10 == 0:
-            while not upbringing.resting:
-                upbringing.advance()
+            upbringing.ready()
             flown.append(tested(upbringing))
     return flown
 

@@ -41,7 +41,7 @@ class NStep:
         reset must not be passed on with a new decision.
         """
         if self._states.shape[1:] != state.shape:
-            self._start(*state.shape, reward.shape[1:])
+            self._start(len(state), state.shape[1], reward.shape[1:])
         for rows, newest in ((self._states, state), (self._actions, action), (self._returns, 0.0), (self._open, True)):
             rows[:-1], rows[-1] = rows[1:], newest
         age = np.arange(self.n - 1, -1, -1)[:, None]  # decisions ago

@@ -85,7 +85,8 @@ class Taste:
     def pay(self) -> Doubles:
         """Points for one of each sum, (sums,): mean weights, the longer the more all samples agree."""
         weights = self.weights
-        return _POINTS * weights.mean(axis=0) / float(np.sqrt((weights**2).sum(axis=1).mean()))
+        points: Doubles = _POINTS * weights.mean(axis=0) / np.sqrt((weights**2).sum(axis=1).mean())
+        return points
 
     def worth_asking(self, differences: Doubles) -> Doubles:
         """Return how much the answers to pairs (m, sums) would tell of the taste, (m,), in natural units.

@@ -92,6 +92,7 @@ class Upbringing(Training):
 
     env: LanderEnv
     agent: _Learner
+    memory: PaidMemory
 
     def __init__(self, config: Config = UPBRINGING, seed: int = 0, *, since: int = 0) -> None:
         super().__init__(config, seed, evaluate_every=0, since=since)
@@ -113,7 +114,7 @@ class Upbringing(Training):
             return super()._new_agent(config, rng, **parts)
         task = self.task
         parts |= {"symmetry": task.symmetry, "action_chances": task.action_chances}
-        parts["replay"] = PaidMemory(config.replay_size, task.num_features)
+        parts["replay"] = self.memory = PaidMemory(config.replay_size, task.num_features)
         return _Learner(task.num_features, task.num_actions, config, rng, **parts)
 
     @property
@@ -127,9 +128,8 @@ class Upbringing(Training):
         self._starts[fresh] = np.column_stack([env.position, env.velocity, env.angle, env.angular_velocity])[fresh]
         self.agent.rests = self.resting
         progress = super().advance()
-        if self._scouts is None and not self._pool and self.agent.decisions >= BEFORE:
-            self._scouts = self._scout()
-        for _ in range(_SCOUTING if self._scouts else 0):
+        wanted = self._scouts is not None or (self.question is None and self.agent.decisions >= BEFORE)
+        for _ in range(_SCOUTING if wanted else 0):
             self._go_scouting()
         return progress
 
@@ -170,29 +170,33 @@ class Upbringing(Training):
         pairs = [(start, *pair) for start, pairs in enumerate(self._pool) for pair in pairs]
         if pairs:
             told = self.taste.worth_asking(np.array([first.sums - second.sums for _, first, second in pairs]))
-            start, *self.question = pairs[int(told.argmax())]
+            start, first, second = pairs[int(told.argmax())]
+            self.question = first, second
             del self._pool[start]
 
     def _pay(self) -> None:
-        points = self.taste.pay
-        self.agent.paying.points = points
-        self.agent.replay.pay(points)
+        self.agent.paying.points = points = self.taste.pay
+        self.memory.pay(points)
 
     # Flights to ask about
 
     def _go_scouting(self) -> None:
+        """Take one decision of the flights to ask about; begin them if there are none."""
+        self._scouts = self._scouts or self._scout()
         try:
-            if self._scouts is not None:
-                next(self._scouts)
+            next(self._scouts)
         except StopIteration as done:
             self._pool, self._scouts = done.value, None
             if self.question is None:
                 self._ask()
 
-    def scout(self) -> None:
-        """Fly what is under way to the end."""
-        while self._scouts is not None:
+    def ready(self) -> Question:
+        """Learn from all answers, fly all flights under way to their end, and return the question."""
+        while not self.resting:
+            self.advance()
+        while self.question is None or self._scouts is not None:
             self._go_scouting()
+        return self.question
 
     def _scout(self) -> Trial[list[list[Question]]]:
         """Fly from a few starts, several times from each; return pairs for each start."""
@@ -207,7 +211,8 @@ class Upbringing(Training):
         done: Ints = np.full((count, _LONGEST), -1)
         for number, (_, actions) in enumerate(known):
             done[(number + 1) * _COPIES - 1, : len(actions)] = actions
-        poses, taken, sums = [_poses(env)], [], np.zeros((count, len(SUMS)))
+        poses, sums = [_poses(env)], np.zeros((count, len(SUMS)))
+        taken: list[Ints] = []
         observation, held = env.observe(), env.actions
         while (env.outcome == FLYING).any():
             again = done[:, len(taken)]
@@ -219,7 +224,7 @@ class Upbringing(Training):
             yield
         lengths = -(-env.steps // env.frame_skip)
         flights = [
-            Flight(np.array(poses)[: length + 1, slot], np.array(taken)[:length, slot], outcome, sums[slot])
+            Flight(np.stack(poses)[: length + 1, slot], np.stack(taken)[:length, slot], outcome, sums[slot])
             for slot, (length, outcome) in enumerate(zip(lengths.tolist(), env.outcome.tolist(), strict=True))
         ]
         groups = (flights[first : first + _COPIES] for first in range(0, count, _COPIES))
