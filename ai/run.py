@@ -5,12 +5,32 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final, Self
+
+import numpy as np
 
 from ai.files import FolderKind
 
 TRAINING_FILE: Final = "training.json"  # in a run's folder: how it was made, and what it has measured
+
+
+@dataclass(frozen=True)
+class Measured:
+    """How a run stands at one moment: what its steps return, and the columns of its curves.
+
+    Fields are numbers, or several of them. What is not known yet is NaN.
+    """
+
+    may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
+
+    seconds: float  # of training so far, pauses left out
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The numbers of its columns."""
+        return tuple(np.hstack(list(vars(self).values())).tolist())
 
 
 class Run(ABC):
@@ -23,7 +43,7 @@ class Run(ABC):
         kind: what its folder may hold.
         config, seed: what all of it follows from.
         clock: counts seconds.
-        seconds: spent in training, as the caller counts them.
+        seconds: spent in training.
         best: score of the best network so far; None if none has been measured.
         lost: what could not be restored of a run that goes on, in words.
         diverged: whether what it remembers may be broken: then there is no state to go on from.
@@ -59,9 +79,24 @@ class Run(ABC):
         """Whether there is nothing left to train."""
         return self.steps is not None and self.moment >= self.steps
 
-    @abstractmethod
     def advance(self) -> Any:
-        """Take one step; return the progress. Raises FloatingPointError when a number is no longer finite."""
+        """Take one step, and count its time; return the progress.
+
+        Raises FloatingPointError when a number is no longer finite.
+        """
+        began = self.clock()
+        self.take_step()
+        self.seconds += self.clock() - began
+        return self.progress
+
+    @abstractmethod
+    def take_step(self) -> None:
+        """Take one step; `advance` calls it."""
+
+    @property
+    @abstractmethod
+    def progress(self) -> Measured:
+        """How it stands now."""
 
     @abstractmethod
     def apply_live(self, config: Any) -> None:

@@ -29,11 +29,11 @@ import numpy as np
 
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES
-from ai.training.history import Point
 from ai.training.lander_session import LanderSession
+from ai.training.loop import Progress
 
 COLUMNS: Final = (
-    "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
+    "seconds", "decisions", "episodes", "success_rate", "mean_return", "loss", "mean_q", "epsilon", "stage",
     "crashed", "out_of_bounds", "timed_out",
 )  # fmt: skip
 MANY, ALONE = 2_500.0, 150.0  # decisions a second of many landers, and of one
@@ -129,7 +129,7 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
         messages = next(going)
         while taken < case.decisions and time.process_time() - began < PATIENCE:
             for message in messages:
-                if isinstance(message, Point):
+                if isinstance(message, Progress):
                     taken = int(message.decisions)
                     rows.append([getattr(message, name) for name in COLUMNS])
             if turns and taken >= turns[0][0]:
@@ -146,8 +146,8 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
 
 
 def _clock(turns: float) -> Callable[[], float]:
-    """Return a clock by which so many turns of a live run take a second: each looks at it twice on either side."""
-    return count(0.0, 0.5 / turns).__next__
+    """Return a clock by which so many turns of a live run take a second: each looks at it twice."""
+    return count(0.0, 1.0 / turns).__next__
 
 
 def write(file: Path, tables: dict[str, np.ndarray], described: dict[str, Any]) -> None:

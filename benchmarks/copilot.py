@@ -22,12 +22,13 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.futures import Futures, Push
+from ai.copilot.futures import Futures
 from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.pilots import COAST, LaggyPilot, NoisyPilot, Pilot, ScriptedPilot
+from ai.lander.push import Push
 from ai.lander.rules import ACTION_SHARES
 from ai.pilots.own import MeasuredPilot
 from ai.training.statistics import wilson
@@ -157,8 +158,7 @@ def fly(env: LanderEnv, agent: DeepQAgent, pilots: Sequence[Pilot], given: Help)
             action[mine] = pilot.act(wished[mine], held=env.actions[mine])
             shares[mine] = getattr(pilot, "shares", ACTION_SHARES.__getitem__)(action[mine])
             if not isinstance(pilot, Adversary):
-                rows = zip(action[mine].tolist(), *shares[mine].T.tolist(), strict=True)
-                asked[mine] = [Push(*row) for row in rows]
+                asked[mine] = [Push.of(*row) for row in shares[mine].tolist()]
         known = copilot.foresee(env, asked) if copilot and given.foresees else None
         for pilot, mine in hands:
             if known and isinstance(pilot, Adversary):

@@ -51,15 +51,13 @@ from game.digits.kept import classifier_in
 from game.drawing.paint_cache import A_FRAME, idle, spread
 from game.scenes import scene_of
 from game.scenes.ahead import load
-from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
-from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.learn.path import PATH
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.menus.background import LOADER
-from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
+from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.scenes.menus.menu import MenuScene
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
@@ -124,12 +122,17 @@ def rows() -> dict[str, Row]:
 
     play = Row(lambda context: PlayScene(context, seed=4), FLOWN)
 
+    def mapped(context: Context) -> Scene:
+        scene = WatchScene(context, seed=4)
+        scene.world.policy_map.on = True
+        return scene
+
     def heap(context: Context) -> Scene:
         return PhysicsScene(context, "heap")
 
     special = {
         "WatchScene", "PhysicsScene", "PhysicsStepScene", "ChapterScene", "mission", "descent", "LessonScene",
-        "DreamScene", "DigitInsideScene", "WhyNotScene", "Play", "swarm",
+        "DigitInsideScene", "inside, sums", "inside, dreams", "Play", "swarm",
     }  # fmt: skip
     others = {name for name in ALL if name not in special and not name.startswith("chapter")}
     return {
@@ -149,15 +152,14 @@ def rows() -> dict[str, Row]:
         "pause": over_play(lambda below: PauseScene(below.context, below)),
         "dialog": over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)])),
         "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
-        "dialog, picking": over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print)),
         "choices": over_play(
             lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         "watch": Row(lambda context: WatchScene(context, seed=4)),
         "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
-        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
-        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch, map": Row(mapped),
+        "watch, touched": Row(mapped, (pygame.K_SPACE, pygame.K_RETURN, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
@@ -181,11 +183,8 @@ def rows() -> dict[str, Row]:
             )
             for name in ("modern", "classic")
         },
-        "dream": Row(DreamScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
-        "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n)),
-        "inside, classic": of_seven(DigitInsideScene, (pygame.K_n,), "classic"),
-        "whynot, modern": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r)),
-        "whynot, classic": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r), "classic"),
+        "inside, modern": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT, pygame.K_n)),
+        "inside, classic": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT, pygame.K_n), "classic"),
         "menu": Row(MenuScene),
         "train": of_tour("TrainScene", (pygame.K_RETURN,)),
         "train, split": Row(_split),

@@ -26,11 +26,13 @@ from typing import Any
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.futures import DECISION_STEPS, Future, Push
+from ai.copilot.futures import DECISION_STEPS, Future
 from ai.copilot.guardian import decisions_of
-from ai.flights.recording import STEPS, Shares
+from ai.flights.recording import Recording
+from ai.lander.push import KEYS, STEPS, Push
 from engine import DT
-from game.flight.flight import Flight
+from game.flight.choosers import Crew
+from game.flight.flight import Flight, begin
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard
 
@@ -75,24 +77,26 @@ class Live:
     known: list[int] = field(default_factory=list)  # futures of each decision
     delays: list[float] = field(default_factory=list)  # seconds from a change of the stick to its decision
 
-    def fly(self, flight: Flight, guard: Guard, rng: np.random.Generator, hands: str, period: int, ready: int) -> None:
+    def fly(
+        self, flight: Flight[Crew], guard: Guard, rng: np.random.Generator, hands: str, period: int, ready: int
+    ) -> None:
         """Fly with random keys, or a random stick, changed every `period` steps, once it has hung for `ready` steps."""
-        asked: tuple[int, Shares | None] = 0, None
+        asked = Push()
         changed: int | None = None
         due = time.perf_counter()
         for step in range(-ready, LIVE_STEPS):
             due += DT
             time.sleep(max(0.0, due - time.perf_counter()))
             if step < 0:
-                guard.hang(0)
+                guard.hang(flight, asked)
                 continue
             if step % period == 0:
                 asked, changed = _stick(rng, hands), step
-            flight.step(*asked)
+            flight.step(asked)
             if flight.over:
                 break
-            if step % DECISION_STEPS == 0 and flight.decision and flight.decision.known:
-                self.known.append(len(flight.decision.known[0]))
+            if step % DECISION_STEPS == 0 and (decision := flight.choice.together) and decision.known:
+                self.known.append(len(decision.known[0]))
                 if changed is not None and not guard.waits:
                     self.delays.append((step - changed) * DT)
                     changed = None
@@ -101,12 +105,11 @@ class Live:
         self.waited += guard.waited
 
 
-def _stick(rng: np.random.Generator, hands: str) -> tuple[int, Shares | None]:
+def _stick(rng: np.random.Generator, hands: str) -> Push:
     """Return a random key, or a random position of the stick."""
     if hands == "keys":
-        return int(rng.integers(6)), None
-    main, side = int(rng.integers(STEPS + 1)), int(rng.integers(-STEPS, STEPS + 1))
-    return Push.of(main / STEPS, side / STEPS).action, (main, side)
+        return KEYS[int(rng.integers(6))]
+    return Push(int(rng.integers(STEPS + 1)), int(rng.integers(-STEPS, STEPS + 1)))
 
 
 def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None:
@@ -116,10 +119,10 @@ def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None
     for (hands, period), dial in product((("keys", 61), ("keys", 13), ("stick", 61), ("stick", 13)), dials):
         rng, ahead, found = np.random.default_rng(seed), Watched(), Live()
         for number in range(flights):
-            flight = Flight(int(rng.integers(1 << 30)), agent)
-            flight.guard = Guard(flight, ahead)
-            flight.help(dial)
-            found.fly(flight, flight.guard, rng, hands, period, ready=30 if number else 120)
+            flight = begin(Recording(int(rng.integers(1 << 30)), "random"), agent)
+            guard = flight.chooser.guard = Guard(flight.chooser, ahead)
+            flight.chooser.help(dial)
+            found.fly(flight, guard, rng, hands, period, ready=30 if number else 120)
         ahead.close()
         first, every = [ages[0] for ages in ahead.ages if ages], [age for ages in ahead.ages for age in ages]
         times = [f"{1e3 * np.median(each):.0f}, {1e3 * np.quantile(each, 0.99):.0f} ms"

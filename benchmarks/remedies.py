@@ -29,8 +29,9 @@ import numpy as np
 from ai.training.config import PRESETS, Config
 from ai.training.curves import RecentCurves
 from ai.training.hints import Adviser, Hint
-from ai.training.history import Checkpoint, History, Point, SettingChange
+from ai.training.history import Checkpoint, History, SettingChange
 from ai.training.lander_session import LanderSession
+from ai.training.loop import Progress
 from ai.training.messages import NetworkState, RunStarted
 from benchmarks.broken_runs import WEAKENED
 
@@ -102,7 +103,7 @@ class Watched:
         for message in messages:
             if isinstance(message, RunStarted):
                 self.config = message.config
-            elif isinstance(message, Point | SettingChange | Checkpoint):
+            elif isinstance(message, Progress | SettingChange | Checkpoint):
                 self.history.append(message)
             elif isinstance(message, NetworkState):
                 return self.adviser.advise(self.history, self.config)

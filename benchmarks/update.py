@@ -6,8 +6,9 @@ An update is the whole of it: next states through the target network, the larges
 the online network, squared error at the chosen actions only, the way back, one step of Adam. A decision is
 one observation through the network. PyTorch has its fused Adam, and is measured as it is, compiled (where there is a
 C++ compiler; it takes a minute at first) and, for a decision, traced and optimized for inference: the table has the
-quickest, and says which. All take turns, ten updates or a hundred decisions each, so that a busy machine slows all;
-times are processor time, without that of other work.
+quickest, and says which. A `learn` is all that the preset modern learns in one decision, from a memory of a million,
+drawn uniformly and by priorities. All take turns, ten updates or a hundred decisions each, so that a busy machine slows
+all; times are processor time, without that of other work.
 """
 
 import os
@@ -23,6 +24,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from ai.agent import DeepQAgent, Transition
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -32,6 +34,7 @@ from ai.nn import (
     LayerNormalisation,
     NeuralNetwork,
 )
+from ai.training.config import PRESETS
 
 try:
     import torch
@@ -95,6 +98,13 @@ def our_update(network: NeuralNetwork, size: int) -> Task:
         optimizer.step(network.values, network.gradients)
 
     return update
+
+
+def our_learn(prioritised: bool) -> Task:
+    agent = DeepQAgent(config=PRESETS["modern"].changed(prioritised=prioritised))
+    states, actions, rewards, next_states, terminals = batch_of(agent.replay.capacity)
+    agent.replay.add(Transition(states, next_states, actions, rewards, terminals.astype(bool), 1))
+    return agent.learn
 
 
 def torch_network(normalised: bool = False) -> "torch.nn.Module":
@@ -187,6 +197,9 @@ def main() -> None:
     theirs = torch_updates(True, 256) if torch is not None else {}
     report("update 9-64-64-6 normalised ReLU, batch 256", our_update(normalised_network(), 256), theirs, 10)
     report("decision 9-128-128-6 tanh", our_decision(), torch_decisions() if torch is not None else {}, 100)
+
+    uniform, prioritised = medians(our_learn(False), our_learn(True), calls=2)
+    print(f"\nlearn, uniform {uniform:,.0f} µs, prioritised {prioritised:,.0f} µs: {prioritised / uniform:.2f} times")
 
     if torch is None:
         print('\nPyTorch is not installed; to compare with it: pip install -e ".[bench]"')

@@ -209,8 +209,8 @@ def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None
 
     keeper, line_at = Keeper(training, output), time.monotonic() + _LINE_SECONDS
     with cli.progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
-        for progress in limit.run(training):
-            share, words = limit.share(training), str(progress)
+        for _ in limit.run(training):
+            share, words = limit.share(training), str(training)
             bar.update(int(_PARTS * share) - bar.n)
             bar.set_postfix_str(words, refresh=False)
             if bar.disable and time.monotonic() >= line_at:

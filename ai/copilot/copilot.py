@@ -14,13 +14,14 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.decision import in_points
-from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Known, Lookahead, Push
+from ai.copilot.futures import DECISION_STEPS, Future, Futures, Here, Known, Lookahead
 from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
 from ai.copilot.intent import Intent, in_question
 from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES
 
@@ -191,8 +192,11 @@ class CoPilot:
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
         given = observation, pilot, values, meant, likely, self.assist, self.mode, self.reward_scale
         if self.mode is Mode.GUARDIAN and env is not None:
-            pushes = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
-            return SharedDecision(*given, *self._save(env, pushes, values, known, whole=whole))
+            pushes = [Push.of(*push) for push in pushed.tolist()]
+            saved = self._save(env, pushes, values, known, whole=whole)
+            action, _, source, *_ = saved
+            action[source == ActionSource.PILOT] = pilot[source == ActionSource.PILOT]
+            return SharedDecision(*given, *saved)
         weigh = _guard if self.mode is Mode.GUARDIAN else _tolerate
         best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist), self.reward_scale)
         candidates = _candidates(pilot, best)
@@ -289,7 +293,7 @@ class CoPilot:
         feasible = np.array([[push not in each or each[push].passes for push in KEYS] for each in known])
         source = np.array([choice.source for choice in choices])
         action = np.array([choice.push.action for choice in choices])
-        shares = np.array([choice.push[1:] for choice in choices])
+        shares = np.array([choice.push.shares for choice in choices])
         held = np.array([choice.held for choice in choices])
         return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(known), held
 

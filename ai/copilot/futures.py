@@ -13,12 +13,13 @@ from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
-from ai.environment import Bools, Doubles, Ints, T, finished
+from ai.environment import Bools, Doubles, T, finished
 from ai.lander.environment import LanderEnv, LanderParams, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
-from ai.lander.rules import ACTION_SHARES, nearest_action
+from ai.lander.rules import ACTION_SHARES
 from engine import DT
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
@@ -27,27 +28,9 @@ SPARE: Final = 1.5  # seconds before time is out, from which on a landing does n
 RESTLESS: Final = 4.0  # seconds on the ground after which a future that has not landed counts as one that does not
 _MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
 _STUCK: Final = round(RESTLESS / DT) // DECISION_STEPS
-_GATHERED: Final = 8  # futures from which on those that touch down wait for each other
-_FEW: Final = 8  # until only one of so many is in the air
-# Metres of height, and of a leg that leans, and seconds of falling, within which one touches down soon.
-_LOW, _LEG, _SOON = 0.1, 1.5, 0.1
 _BATCH: Final = 4096  # futures at most in one batch: more take no less time each
 
 
-class Push(NamedTuple):
-    """What is pushed for one decision: an action, 0 to 5, and the shares of thrust of main engine and jets."""
-
-    action: int
-    main: float
-    side: float
-
-    @classmethod
-    def of(cls, main: float, side: float) -> Push:
-        """Return the push of these shares of thrust, with the action that is nearest to them."""
-        return cls(nearest_action(main, side), main, side)
-
-
-KEYS: Final = tuple(Push(action, *shares) for action, shares in enumerate(ACTION_SHARES.tolist()))
 Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future, before the network has the stick
 
 
@@ -59,7 +42,7 @@ class Plan:
         begin: physics steps flown when it begins.
         gravity: of its world, m/s².
         target: number of the pad that the network flew to in it.
-        actions, shares: what is pushed in its k decisions, (k,), and with which shares of thrust, (k, 2).
+        shares: what is pushed in its k decisions, as shares of thrust, (k, 2).
         states: x, y, angle, and their changes each second, before every decision and at its end, (k + 1, 6).
 
     """
@@ -67,23 +50,22 @@ class Plan:
     begin: int
     gravity: float
     target: int
-    actions: Ints
     shares: Doubles
     states: Doubles
 
     @property
     def ends(self) -> int:
         """Physics steps flown when it has landed."""
-        return self.begin + DECISION_STEPS * len(self.actions)
+        return self.begin + DECISION_STEPS * len(self.shares)
 
     def push(self, here: Here) -> Push | None:
         """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
         number, between = divmod(here.steps - self.begin, DECISION_STEPS)
-        if between or not 0 <= number < len(self.actions) or here.gravity != self.gravity:
+        if between or not 0 <= number < len(self.shares) or here.gravity != self.gravity:
             return None
         if tuple(self.states[number].tolist()) != here.state:
             return None
-        return Push(int(self.actions[number]), *self.shares[number].tolist())
+        return Push.of(*self.shares[number].tolist())
 
 
 class Here(NamedTuple):
@@ -178,7 +160,7 @@ Flying = Generator[None, None, T]  # yields after each decision, and returns wha
 
 
 class Lookahead:
-    """Futures of a network, flown in batches. It keeps its environments for the next ones over the same ground.
+    """Futures of a network, flown in batches. It keeps its environment for the next ones over the same ground.
 
     Args:
         pilot: the network that flies on, as it flies alone: to the pad that is its target, or along a `route`.
@@ -188,8 +170,8 @@ class Lookahead:
 
     def __init__(self, pilot: Pilot, route: Route | None = None) -> None:
         self.pilot, self.route = pilot, route
-        self._envs: dict[int, LanderEnv] = {}
-        self._built = ""  # what these are built of
+        self._env: LanderEnv | None = None
+        self._built = ""  # what that is built of
 
     def futures(
         self, moment: Moment, asked: Sequence[tuple[int, Push]], decisions: int = 1, before: Opening = ()
@@ -247,104 +229,44 @@ class Lookahead:
         return self._fly(moment, [(row, opening, int(moment.target[row])) for row, opening in asked])
 
     def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[list[tuple[Plan, bool]]]:
-        """Fly landers with openings to pads; return what was flown, and whether it landed.
-
-        Of many, those that are about to touch down wait until most are as far, and go on together: a step takes ten
-        times as long with a single contact in it.
-        """
-        count = len(asked)
-        length, pushed = _table([opening for _, opening, _ in asked])
+        """Fly landers with openings to pads, until all have ended; return what was flown, and whether it landed."""
         start = moment.take(np.array([row for row, _, _ in asked]))
         start.target[:] = [pad for _, _, pad in asked]
-        # A row more than there are decisions: what has ended, or waits, writes into the next one.
-        actions, shares = np.zeros((_MOST + 1, count), dtype=np.intp), np.zeros((_MOST + 1, count, 2))
-        states = np.empty((_MOST + 2, count, 6))
-        flown, landed, touched = np.zeros((3, count), dtype=np.intp)
-        env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
-        states[0] = _states(env)[:count]
-        flies = np.arange(env.num_envs) < count  # (slots,), as are the next two
-        waits, down = np.zeros((2, env.num_envs), dtype=bool)
-        gathers = count >= _GATHERED
+        env = self._begin(start)
+        flies, landed = np.ones(len(asked), dtype=bool), np.zeros(len(asked), dtype=bool)
+        flown, grounded = np.zeros((2, len(asked)), dtype=np.intp)  # decisions, in all and at last on the ground
+        shares: list[Doubles] = []
+        states = [_states(env)]
         while flies.any():
-            n, at = len(future), flown[future]
-            action, share = self._choose(env)
-            action[waits], share[waits] = env.actions[waits], env.shares[waits]
-            opens = np.flatnonzero(at < length[future])
-            given = pushed[at[opens], future[opens]]
-            action[opens], share[opens] = given[:, 0], given[:, 1:]
-            actions[at, future], shares[at, future] = action[:n], share[:n]
+            seen = self.route.observe(env, self.pilot) if self.route else env.observe_for(self.pilot)
+            action = self.pilot.act(seen, held=env.actions).copy()
+            share = ACTION_SHARES[action]
+            for lander, (_, opening, _) in enumerate(asked):
+                if len(shares) < len(opening):
+                    action[lander], share[lander] = (push := opening[len(shares)]).action, push.shares
             env.fly(action, share)
-            states[at + 1, future] = _states(env)[:n]
-            moves = flies & ~waits
-            flown[future] += moves[:n]
+            shares.append(share)
+            states.append(_states(env))
+            flown += flies
             yield
-            if gathers:
-                waits, down = _gather(env, flies, waits, down)
-                moves &= ~waits
             late = env.time > env.limits.time - SPARE
-            ended = late | (env.outcome != Outcome.FLYING)
-            touched[future] = np.where(env.contacts[:n].any(axis=1), touched[future] + 1, 0)
-            ended[:n] |= (flown[future] == _MOST) | (touched[future] >= _STUCK)
-            over = np.flatnonzero(moves & ended)
-            landed[future[over]] = (env.outcome == Outcome.LANDED)[over] & ~late[over]
-            flies[over] = False
-            left = np.flatnonzero(flies)
-            if len(over) and len(left) and _size(len(left)) < env.num_envs:
-                masks = np.zeros((3, _size(len(left))), dtype=bool)
-                masks[:, : len(left)] = flies[left], waits[left], down[left]
-                env, future = self._begin(Moment.of(env).take(left), future[left])
-                flies, waits, down = masks
+            grounded = np.where(env.contacts.any(axis=1), grounded + 1, 0)
+            landed |= flies & (env.outcome == Outcome.LANDED) & ~late
+            flies &= (env.outcome == Outcome.FLYING) & ~late & (grounded < _STUCK) & (len(shares) < _MOST)
+        flight = np.array(shares), np.array(states)
         found = []
-        for row, end in enumerate(flown.tolist()):
-            way = actions[:end, row].copy(), shares[:end, row].copy(), states[: end + 1, row].copy()
-            found.append((Plan(int(start.steps[row]), start.fall(row), asked[row][2], *way), bool(landed[row])))
+        for lander, (row, _, pad) in enumerate(asked):
+            way = [part[: flown[lander] + more, lander].copy() for more, part in enumerate(flight)]
+            plan = Plan(int(moment.steps[row]), moment.fall(row), pad, *way)
+            found.append((plan, bool(landed[lander])))
         return found
 
-    def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:
-        """Return the network's actions (n,), and their shares of thrust, (n, 2)."""
-        seen = self.route.observe(env, self.pilot) if self.route else env.observe_for(self.pilot)
-        action = self.pilot.act(seen, held=env.actions).copy()
-        return action, ACTION_SHARES[action]
-
-    def _begin(self, moment: Moment, future: Ints) -> tuple[LanderEnv, Ints]:
-        """Put a moment into an environment, which may have more slots; return it, and what each slot in use flies."""
-        count, size = len(future), _size(len(future))
-        if self._built != moment.built:
-            self._built, self._envs = moment.built, {}
-        if size not in self._envs:
-            self._envs[size] = roomy(size, moment)
-        env = self._envs[size]
-        moment.take(np.minimum(np.arange(size), count - 1)).put(env)
-        env.outcome[count:] = Outcome.TIMED_OUT
-        env.lander.active = env.outcome == Outcome.FLYING
-        return env, future
-
-
-def _table(openings: Sequence[Opening]) -> tuple[Ints, Doubles]:
-    """Return how long n openings are, (n,), and their pushes, actions and shares, (longest, n, 3)."""
-    length = np.array([len(opening) for opening in openings])
-    pushed = np.zeros((length.max(), len(openings), 3))
-    for index, opening in enumerate(openings):
-        pushed[: len(opening), index] = opening
-    return length, pushed
-
-
-def _gather(env: LanderEnv, flies: Bools, waits: Bools, down: Bools) -> tuple[Bools, Bools]:
-    """Let those that `flies` and will soon touch down wait in the air, or all that `waits` go on and be `down`.
-
-    All are (n,); returns which of them wait now, and which have gone on. Those that wait are out of the environment's
-    hands, as if they had ended.
-    """
-    sin, _, _ = env.turned
-    height = env.altitude - _LEG * np.abs(sin) + _SOON * env.velocity[:, 1]
-    coming = flies & ~waits & ~down & (env.outcome == Outcome.FLYING)
-    near = coming & (height < _LOW) & ~env.contacts.any(axis=1)
-    env.outcome[near] = Outcome.TIMED_OUT
-    waits = waits | near
-    if _FEW * np.count_nonzero(coming & ~near) <= np.count_nonzero(flies & ~down):
-        env.outcome[waits], down, waits = Outcome.FLYING, down | waits, np.zeros_like(waits)
-    env.lander.active = env.outcome == Outcome.FLYING
-    return waits, down
+    def _begin(self, moment: Moment) -> LanderEnv:
+        """Put a moment into an environment, and return it; it is made anew where the one before does not fit."""
+        if self._env is None or self._env.num_envs != len(moment) or self._built != moment.built:
+            self._env, self._built = roomy(len(moment), moment), moment.built
+        moment.put(self._env)
+        return self._env
 
 
 def roomy(slots: int, moment: Moment) -> LanderEnv:
@@ -354,11 +276,6 @@ def roomy(slots: int, moment: Moment) -> LanderEnv:
     env = LanderEnv(slots, 0, frame_skip=DECISION_STEPS, params=params, ground=moment.ground)
     env.world.params.quadratic_drag = np.tile(env.world.params.quadratic_drag, (slots, 1, 1))
     return env
-
-
-def _size(count: int) -> int:
-    """Return how many slots so many futures are flown in: few different numbers, so that environments are kept."""
-    return 1 << (count - 1).bit_length()
 
 
 def _pads_of(moment: Moment, row: int) -> list[int]:

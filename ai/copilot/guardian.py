@@ -9,7 +9,8 @@ from enum import IntEnum
 from math import inf
 from typing import Final, NamedTuple
 
-from ai.copilot.futures import KEYS, Future, Here, Known, Plan, Push
+from ai.copilot.futures import Future, Here, Known, Plan
+from ai.lander.push import KEYS, Push
 
 _FARTHEST: Final = 12  # decisions of an action after which there must be a landing, with the dial at 1
 _PATIENCE: Final = 180  # steps by which the landing may be put off, from the first correction on
@@ -99,8 +100,8 @@ class Guardian:
             self.plan, self._due = None, inf
         best, own = head or network, KEYS[asked.action] if whole else asked
         offers = {asked: ActionSource.PILOT}
-        offers.setdefault(Push.of(own.main, best.side), ActionSource.PILOT_MAIN)
-        offers.setdefault(Push.of(best.main, own.side), ActionSource.PILOT_STEER)
+        offers.setdefault(Push(own.main, best.side), ActionSource.PILOT_MAIN)
+        offers.setdefault(Push(best.main, own.side), ActionSource.PILOT_STEER)
         for push in (best,) if head else (best, *KEYS):
             offers.setdefault(push, ActionSource.COPILOT)
         return offers, head

@@ -13,38 +13,30 @@ from ai.nn.costs import softmax
 
 STEPS: Final = 150
 STEP: Final = 0.15  # how far the pixel that changes most is moved, at first
-INK: Final = 110.0  # pixels: some more than a digit of MNIST has
+_INK: Final = 312.0  # pixels of ink at the most: nearly three times what a digit of MNIST has
 _LAST: Final = 0.2  # of the step, at the end
-_SHIFT: Final = 1.5  # pixels at the most, to and fro
-_SOFT: Final = 0.1  # how far each step blurs what is there
+_SHIFT: Final = 1  # pixels at the most, to and fro
+_SOFT, _SMOOTH = 0.07, 0.7  # how far each step blurs what is there, and what is added
 _NOISE: Final = 0.1
 
 
 class ActivationMaximisation:
     """Activation maximisation of one image towards a digit, a step at a time.
 
-    Gradient ascent on the input (Erhan et al. 2009, Simonyan et al. 2014). Left to itself it finds what no person
-    would read. `calm`, the regularisation from 0 to 1, limits its ink, blurs it, and moves it to and fro, so that
-    only strokes stay that mean the same wherever they are (Yosinski et al. 2015, Mordvintsev et al. 2015).
-    It begins with `start`, an image (28, 28), or with noise. Raises ValueError for a digit outside 0 to 9.
+    Gradient ascent on the input (Erhan et al. 2009, Simonyan et al. 2014), from noise. Left to itself it finds what no
+    person would read. It is regularised: its ink is limited, blurred, and moved to and fro, so that only strokes stay
+    that mean the same wherever they are (Yosinski et al. 2015, Mordvintsev et al. 2015). Raises ValueError for a digit
+    outside 0 to 9.
     `image` is (28, 28), 0 to 1; `probabilities` (10,) what the network reads in it after `step` steps.
     """
 
-    def __init__(
-        self,
-        classifier: DigitClassifier,
-        digit: int,
-        rng: np.random.Generator,
-        start: Image | None = None,
-        calm: float = 0.7,
-    ) -> None:
+    def __init__(self, classifier: DigitClassifier, digit: int, rng: np.random.Generator) -> None:
         if digit not in range(DIGITS):
             raise ValueError(f"a digit is a number from 0 to 9, not {digit!r}")
-        self.classifier, self.digit, self.calm = classifier, digit, calm
+        self.classifier, self.digit = classifier, digit
         self._rng = rng
         self.step = 0
-        first = _NOISE * rng.random((SIDE, SIDE)) if start is None else np.clip(np.nan_to_num(start), 0, 1)
-        self.image: Image = np.asarray(first, np.float32)
+        self.image: Image = np.asarray(_NOISE * rng.random((SIDE, SIDE)), np.float32)
         self.probabilities = classifier.predict(self.image)[0]
 
     @property
@@ -54,14 +46,13 @@ class ActivationMaximisation:
 
     def advance(self) -> None:
         """Take one step, and let the network read the image anew."""
-        reach = round(_SHIFT * self.calm)
-        down, across = self._rng.integers(-reach, reach + 1, 2).tolist()
+        down, across = self._rng.integers(-_SHIFT, _SHIFT + 1, 2).tolist()
         moved = np.roll(self.image, (down, across), axis=(0, 1))
-        gradient = _blurred(np.roll(self.gradient(moved), (-down, -across), axis=(0, 1)), self.calm)
+        gradient = _blurred(np.roll(self.gradient(moved), (-down, -across), axis=(0, 1)), _SMOOTH)
         gradient /= max(float(np.abs(gradient).max()), 1e-12)
         length = STEP * (1 - (1 - _LAST) * self.step / STEPS)
-        image = _blurred(self.image, _SOFT * self.calm) + length * gradient
-        self.image = _with_ink(image, INK + (1 - self.calm) * (image.size - INK))
+        image = _blurred(self.image, _SOFT) + length * gradient
+        self.image = _with_ink(image, _INK)
         self.step += 1
         self.probabilities = self.classifier.predict(self.image)[0]
 

@@ -30,31 +30,23 @@ from ai.files import (
     read_as,
     read_json,
 )
-from ai.files.knobs import nearest_preset
 from ai.nn import OPTIMIZERS, Array, ModelFormatError
-from ai.run import TRAINING_FILE, Run
+from ai.run import TRAINING_FILE, Measured, Run
 
 SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
 _OPTIMIZER: Final = "optimizer."  # begins the names of what the optimizer remembers, in a state
 
 
-@dataclass
-class DigitProgress:
+@dataclass(frozen=True)
+class DigitProgress(Measured):
     """Progress of a run after one learning step."""
 
+    step: int  # learning steps so far
     epoch: float  # how often every image has been seen
-    step: int
-    steps: int  # there will be in all
-    loss: float  # of this batch
-    accuracy: float  # of this batch, as it was learnt from: augmented, and with dropout
+    loss: float  # of the last batch
+    accuracy: float  # of the last batch, share read right as it was learnt from: augmented, and with dropout
     learning_rate: float
     images_per_second: float
-    held_out: float | None = None  # accuracy on the images held out, when an epoch ends
-    best: float | None = None  # the highest of those
-
-    def __str__(self) -> str:
-        best = f", held out {self.best:.2%}" if self.best is not None else ""
-        return f"epoch {self.epoch:.1f}, loss {self.loss:.3f}{best}"
 
 
 class DigitTraining(Run):
@@ -88,6 +80,7 @@ class DigitTraining(Run):
         self.optimizer = OPTIMIZERS[config.optimizer](config.learning_rate)
         self.average = network.values.astype(np.float32, copy=True)
         self._loss = self._accuracy = 0.0
+        self._batch = np.nan, np.nan, np.nan, np.nan  # loss, accuracy, learning rate and pace of the last one
         self._order = np.empty(0, np.intp)
 
     @property
@@ -115,7 +108,7 @@ class DigitTraining(Run):
     def apply_live(self, config: DigitConfig) -> None:
         self.config = self.config.with_live(config)
 
-    def advance(self) -> DigitProgress:
+    def take_step(self) -> None:
         """Learn from one batch, and measure what is held out if an epoch ends with it."""
         began, config, network = self.clock(), self.config, self.classifier.network
         epoch, place = divmod(self.step, self.steps_per_epoch)
@@ -145,10 +138,19 @@ class DigitTraining(Run):
             self.average[...] = network.values  # exactly, as a sum of differences would not be
         self._loss += (loss - self._loss) * 0.05
         self._accuracy += (accuracy - self._accuracy) * 0.05
-        held_out = self._measure() if self.step % self.steps_per_epoch == 0 else None
         spent = self.clock() - began
-        epochs, pace = self.step / self.steps_per_epoch, len(batch) / spent if spent > 0 else 0.0
-        return DigitProgress(epochs, self.step, self.steps, loss, accuracy, rate, pace, held_out, self.best)
+        self._batch = loss, accuracy, rate, len(batch) / spent if spent > 0 else 0.0
+        if self.step % self.steps_per_epoch == 0:
+            self._measure()
+
+    @property
+    def progress(self) -> DigitProgress:
+        return DigitProgress(self.seconds, self.step, self.step / self.steps_per_epoch, *self._batch)
+
+    def __str__(self) -> str:
+        """Say how it stands."""
+        best = f", held out {self.best:.2%}" if self.best is not None else ""
+        return f"epoch {self.progress.epoch:.1f}, loss {self.progress.loss:.3f}{best}"
 
     def _changed(self, images: Images, labels: Labels, rng: np.random.Generator) -> Images:
         config, images = self.config, images.copy()
@@ -159,17 +161,15 @@ class DigitTraining(Run):
         images[drawn] = drawings(labels[drawn], rng)
         return images
 
-    def _measure(self) -> float | None:
+    def _measure(self) -> None:
         """Measure the average on the images held out, and keep it if it is the best so far."""
         epoch = self.step // self.steps_per_epoch
         entry = {"epoch": epoch, "loss": self._loss, "accuracy": self._accuracy}
-        held_out = None
         if len(self.held_images):
             held_out = entry["held_out"] = accuracy(self.current(), self.held_images, self.held_labels)
             if self.best is None or held_out >= self.best:
                 self.best, self.best_values = held_out, self.average.copy()
         self.history.append(entry)
-        return held_out
 
     def current(self) -> DigitClassifier:
         """Return a classifier with the average of the weights as it is now."""
@@ -211,7 +211,7 @@ class DigitTraining(Run):
         best = self.best_classifier()
         epochs, seconds = self.step // self.steps_per_epoch, round(self.seconds, 3)
         described = {
-            **nearest_preset(self.config, DIGIT_PRESETS), "seed": self.seed, "step": self.step, "epochs": epochs,
+            **self.config.described(DIGIT_PRESETS), "seed": self.seed, "step": self.step, "epochs": epochs,
             "seconds": seconds, "held_out": self.best, "kept_epoch": self.best_epoch, "history": [*self.history],
         }  # fmt: skip
         if final:

@@ -20,19 +20,16 @@ import numpy as np
 from ai.files import OneOf, Sized, Within, parse_json, read_as
 from ai.flights.recording import (
     LONGEST,
-    STEPS,
     Claim,
     LegAsList,
     Recording,
     SharedFlight,
-    Shares,
     Start,
     StickHolder,
-    full,
 )
 from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome
-from ai.lander.rules import nearest_action
+from ai.lander.push import KEYS, STEPS, Push
 
 VERSION: Final = 3
 BEGIN, END = f"tranq{VERSION}-", "-over"
@@ -96,22 +93,16 @@ def _spelt(data: bytes) -> str:
 
 def _packed(recording: Recording) -> bytes:
     """Return the inputs of all steps: runs of equal ones, and how far the sticks moved in each step."""
-    actions, moves, asked = recording.actions, b"", [0] * len(recording.actions)
-    if recording.shares:
-        places = [recording.shares.get(step) or full(action) for step, action in enumerate(actions)]
-        moves = _MOVES + np.diff(np.array(places, np.int8), axis=0, prepend=np.int8(0)).T.tobytes()
-        asked = _asked(places)
+    pushes, moves = recording.pushes, b""
+    by_keys = all(push in KEYS for push in pushes)
+    if not by_keys:
+        moves = _MOVES + np.diff(np.array(pushes, np.int8), axis=0, prepend=np.int8(0)).T.tobytes()
     held = [
-        (action - known) % 6 + 6 * (hand is StickHolder.NETWORK)
-        for action, known, hand in zip(actions, asked, recording.hands, strict=True)
+        push.action * by_keys + 6 * (hand is StickHolder.NETWORK)
+        for push, hand in zip(pushes, recording.hands, strict=True)
     ]
     runs = ((each, range(len(list(same)), 0, -_RUN)) for each, same in groupby(held))
     return bytes(each + _HELD * (min(_RUN, left) - 1) for each, steps in runs for left in steps) + moves
-
-
-def _asked(places: list[Shares]) -> list[int]:
-    """Return the actions that sticks ask for: a code says only where another was flown."""
-    return [nearest_action(main / STEPS, side / STEPS) for main, side in places]
 
 
 def flight_of(code: str) -> SharedFlight:
@@ -160,8 +151,8 @@ def _read(data: bytes) -> SharedFlight:
     )
 
 
-def _unpacked(inputs: bytes) -> tuple[list[int], list[StickHolder], dict[int, Shares]]:
-    """Return the actions, the hands and the shares of thrust of `_packed`; raises ValueError."""
+def _unpacked(inputs: bytes) -> tuple[list[Push], list[StickHolder]]:
+    """Return the pushes and the hands of `_packed`; raises ValueError."""
     runs, marked, moves = inputs.partition(_MOVES)
     if sum(run // _HELD + 1 for run in runs) > LONGEST:
         raise ValueError("no flight is so long")
@@ -169,13 +160,10 @@ def _unpacked(inputs: bytes) -> tuple[list[int], list[StickHolder], dict[int, Sh
     holders = list(StickHolder)
     hands = [holders[each // 6] for each in held]
     if not marked:
-        return [each % 6 for each in held], hands, {}
-    if len(moves) != 2 * len(held):
-        raise ValueError("sticks have a place in every step")
+        return [KEYS[each % 6] for each in held], hands
+    if len(moves) != 2 * len(held) or any(each % 6 for each in held):
+        raise ValueError("sticks have a place in every step, and no keys beside it")
     main, side = np.frombuffer(moves, np.int8).reshape(2, -1).cumsum(axis=1, dtype=int)
     if not (((main >= 0) & (main <= STEPS)).all() and (abs(side) <= STEPS).all()):
         raise ValueError("there is no more thrust than all of it")
-    places = list(zip(main.tolist(), side.tolist(), strict=True))
-    actions = [(each + known) % 6 for each, known in zip(held, _asked(places), strict=True)]
-    shares = {step: place for step, place in enumerate(places) if place != full(actions[step])}
-    return actions, hands, shares
+    return list(map(Push, main.tolist(), side.tolist())), hands

@@ -1,4 +1,4 @@
-"""Recording of a flight: its start and the action of every step, from which the flight follows bit for bit."""
+"""Recording of a flight: its start and the push of every step, from which the flight follows bit for bit."""
 
 from __future__ import annotations
 
@@ -6,36 +6,21 @@ from dataclasses import asdict, astuple, dataclass, field, fields, replace
 from enum import Enum
 from typing import Annotated, Any, Final, Self
 
-import numpy as np
-
-from ai.environment import Doubles
 from ai.files import OneOf, Seed, Within
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS, STARTS, Mission
-from ai.lander.rules import ACTION_SHARES, AREAS, Limits
+from ai.lander.push import Push
+from ai.lander.rules import AREAS, Limits
 from ai.lander.spawns import SPAWNS
 
 WIDER: Final = 1.5  # width of wider pads, in shares of their own
 UNHURRIED: Final = 1200.0  # seconds that a flight may take without its time limit
 AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
-STEPS: Final = 16  # from no thrust to all: thrust is recorded in them, so that a flight can be flown again exactly
 
-Shares = tuple[int, int]  # of the main engine, 0 to STEPS, and of the jets, -STEPS, left, to STEPS, right
 End = tuple[float, float, float]  # x, y in metres, angle in rad
 LegAsList = tuple[Annotated[int, Within(1, MOST_LEGS)], Annotated[float, Within(0, TANK)], bool] | None
-
-
-def full(action: int) -> Shares:
-    """Return the shares of all the thrust that an action asks for."""
-    main, side = ACTION_SHARES[action].tolist()
-    return round(STEPS * main), round(STEPS * side)
-
-
-def thrust(shares: Shares | None) -> Doubles | None:
-    """Return shares as the environment takes them, (1, 2); None for all of the action's thrust."""
-    return None if shares is None else np.array([shares]) / STEPS
 
 
 @dataclass(frozen=True)
@@ -85,19 +70,21 @@ class Start:
 
 @dataclass
 class Recording(Start):
-    """Recording of a flight for an exact replay: its start, and the action of every step."""
+    """Recording of a flight for an exact replay: its start, and what every step has pushed."""
 
     leg: LegStart | None = None  # where a flight of a descent begins
-    actions: list[int] = field(default_factory=list)
-    hands: list[StickHolder] = field(default_factory=list)  # the person's, if the action is the one they asked for
-    shares: dict[int, Shares] = field(default_factory=dict)  # of thrust, by steps in which an engine gave less than all
+    pushes: list[Push] = field(default_factory=list)  # of whole sixteenths
+    hands: list[StickHolder] = field(default_factory=list)  # the person's, if the push is the one they asked for
 
     @classmethod
-    def begun(cls, start: Start, leg: LegAsList, actions: list[int], hands: list[StickHolder],
-              shares: dict[int, Shares]) -> Self:  # fmt: skip
+    def begun(cls, start: Start, leg: LegAsList, pushes: list[Push], hands: list[StickHolder]) -> Self:
         """Return the recording of a start that was read, with these inputs."""
         values = {each.name: getattr(start, each.name) for each in fields(Start)}
-        return cls(**values, leg=LegStart(*leg) if leg else None, actions=actions, hands=hands, shares=shares)
+        return cls(**values, leg=LegStart(*leg) if leg else None, pushes=pushes, hands=hands)
+
+    def again(self) -> Self:
+        """Return the recording of another flight from the same start, of which nothing is flown."""
+        return replace(self, pushes=[], hands=[])
 
     def start(self) -> dict[str, Any]:
         """Return its start, with the leg, as JSON can hold it."""

@@ -11,8 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.environment import Doubles, Ints
-from ai.flights.recording import AS_IT_IS, STEPS, End, Recording, SharedFlight, full
+from ai.flights.recording import AS_IT_IS, End, Recording, SharedFlight
 from ai.lander.descent import can_begin, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import PADS, Ground, Pad, hilly
@@ -121,7 +120,7 @@ def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:
 
 def is_true(flight: SharedFlight, real: Earned) -> bool:
     """Whether a flight was flown where it says, and really earned what it claims."""
-    claim, steps = flight.claim, len(flight.recording.actions)
+    claim, steps = flight.claim, len(flight.recording.pushes)
     away = max(abs(claimed - flown) for claimed, flown in zip(claim.end, real.end, strict=True))
     alike = (claim.outcome, claim.points, steps) == (real.outcome, real.points, real.steps)
     return in_its_place(flight) and alike and away <= TOLERANCE and claim.medal <= real.medal
@@ -133,7 +132,7 @@ def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
     for index, flight in enumerate(flights):
         groups[_together(flight.recording)].append(index)
     for group in groups.values():
-        group.sort(key=lambda index: len(flights[index].recording.actions))  # a batch ends with its longest
+        group.sort(key=lambda index: len(flights[index].recording.pushes))  # a batch ends with its longest
         for first in range(0, len(group), _BATCH):
             batch = group[first : first + _BATCH]
             yield from zip(batch, fly_again([flights[index].recording for index in batch]), strict=True)
@@ -149,21 +148,14 @@ def _together(recording: Recording) -> object:
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
     """Fly recordings of one ground again at once; return what each earned."""
-    like, lengths = recordings[0], np.array([len(each.actions) for each in recordings])
+    like, lengths = recordings[0], np.array([len(each.pushes) for each in recordings])
     env = begun(like, [each.seed for each in recordings])
-    actions = np.zeros((lengths.max(), len(recordings)), dtype=np.intp)
+    pushed = np.zeros((lengths.max(), len(recordings), 3))  # actions, and their shares of thrust
     for slot, each in enumerate(recordings):
-        actions[: lengths[slot], slot] = each.actions
+        for step, push in enumerate(each.pushes):
+            pushed[step, slot] = push.action, *push.shares
     found = {slot: earned(env, like, slot) for slot in np.flatnonzero(lengths == 0).tolist()}
-    for step, row in enumerate(actions):
-        env.fly(row, _shares(recordings, step, row))
+    for step, row in enumerate(pushed):
+        env.fly(row[:, 0].astype(int), row[:, 1:])
         found |= {slot: earned(env, like, slot) for slot in np.flatnonzero(lengths == step + 1).tolist()}
     return [found[slot] for slot in range(len(recordings))]
-
-
-def _shares(recordings: Sequence[Recording], step: int, actions: Ints) -> Doubles | None:
-    """Return the shares of thrust (n, 2) of a step; None if every engine gave all of it."""
-    if not any(step in each.shares for each in recordings):
-        return None
-    pairs = zip(recordings, actions.tolist(), strict=True)
-    return np.array([each.shares.get(step) or full(action) for each, action in pairs]) / STEPS

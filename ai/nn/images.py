@@ -12,11 +12,13 @@ from math import prod
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
-from ai.nn.layer import ImageShape, Layer, checked_size
+from ai.nn.layer import NO_ARRAY, ImageShape, Layer, checked_size, fitting
 from ai.nn.layers import FullyConnectedLayer, ones
 from ai.nn.parameter import Array
 
+Bools = NDArray[np.bool_]
 BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache between one pass and the next
 
 
@@ -32,6 +34,7 @@ class ConvolutionLayer(FullyConnectedLayer):
     """
 
     settings = ("inputs", "filters", "kernel")
+    input = NO_ARRAY
     inputs: ImageShape
     outputs: ImageShape
 
@@ -51,9 +54,10 @@ class ConvolutionLayer(FullyConnectedLayer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
         _check_images(self, input_data)
-        self.input = self.kept("input", input_data.shape, self.dtype)
+        self.input = fitting(self.input, input_data.shape, self.dtype)
         self.input[...] = input_data
-        return self._convolve(self.input, self.kept("output", (len(input_data), *self.outputs), self.dtype))
+        self.output = fitting(self.output, (len(input_data), *self.outputs), self.dtype)
+        return self._convolve(self.input, self.output)
 
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array."""
@@ -73,7 +77,7 @@ class ConvolutionLayer(FullyConnectedLayer):
     def input_error(self, output_error: Array) -> Array:
         """Return the sum of what all windows that a pixel lies in send back: (batch, height, width, channels)."""
         error = np.asarray(output_error, self.dtype, order="F")
-        total = self.kept("error", (len(error), *self.inputs), self.dtype)
+        total = self.error = fitting(self.error, (len(error), *self.inputs), self.dtype)
         total.fill(0)
         for x, y in self._blocks(len(error)):
             places = x.stop - x.start, y.stop - y.start, len(error)
@@ -132,6 +136,9 @@ class MaxPoolingLayer(Layer):
     """
 
     settings = ("inputs", "size")
+    output = error = NO_ARRAY
+    given: Bools = np.empty(0, bool)
+    left = given
     inputs: ImageShape
     outputs: ImageShape
 
@@ -146,7 +153,7 @@ class MaxPoolingLayer(Layer):
         """Return the maxima, (batch, height, width, channels)."""
         _check_images(self, input_data)
         self.input = input_data
-        self.output = self.kept("output", (len(input_data), *self.outputs), input_data.dtype)
+        self.output = fitting(self.output, (len(input_data), *self.outputs), input_data.dtype)
         return self._maximum(input_data, self.output)
 
     def predict(self, input_data: Array) -> Array:
@@ -159,17 +166,18 @@ class MaxPoolingLayer(Layer):
 
         The last pixel of a square is not compared: it gets what no other has been given.
         """
-        found = self.kept("error", self.input.shape, self.input.dtype)
-        given, left = (self.kept(name, self.output.shape, bool) for name in ("given", "left"))
+        self.error = fitting(self.error, self.input.shape, self.input.dtype)
+        given = self.given = fitting(self.given, self.output.shape, bool)
+        left = self.left = fitting(self.left, self.output.shape, bool)
         left.fill(True)  # squares whose error no pixel has been given yet
-        *others, (_, last) = zip(self._squares(self.input), self._squares(found), strict=True)
+        *others, (_, last) = zip(self._squares(self.input), self._squares(self.error), strict=True)
         for pixel, error in others:
             np.equal(pixel, self.output, out=given)
             given &= left
             left ^= given
             np.multiply(output_error, given, out=error)
         np.multiply(output_error, left, out=last)
-        return found
+        return self.error
 
     def _maximum(self, images: Array, output: Array) -> Array:
         first, second, *others = self._squares(images)
@@ -194,6 +202,7 @@ class FlattenLayer(Layer):
     settings = ("inputs",)
     inputs: ImageShape
     outputs: int
+    error = NO_ARRAY
 
     def __init__(self, inputs: ImageShape) -> None:
         self.inputs = height, width, channels = _checked_shape(inputs)
@@ -210,9 +219,9 @@ class FlattenLayer(Layer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return the error in the shape of the images."""
-        error = self.kept("error", (len(output_error), *self.inputs), output_error.dtype)
-        error.reshape(output_error.shape, order="F")[...] = output_error
-        return error
+        self.error = fitting(self.error, (len(output_error), *self.inputs), output_error.dtype)
+        self.error.reshape(output_error.shape, order="F")[...] = output_error
+        return self.error
 
 
 def _checked_shape(inputs: ImageShape) -> ImageShape:

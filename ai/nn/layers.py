@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.nn.activations import Activation, Function
-from ai.nn.layer import Layer, checked_size
+from ai.nn.layer import NO_ARRAY, Layer, checked_size, fitting
 from ai.nn.parameter import Array, glorot_uniform
 
 
@@ -18,6 +18,7 @@ class FullyConnectedLayer(Layer):
     """
 
     settings: tuple[str, ...] = ("inputs", "outputs")
+    output = error = NO_ARRAY  # written into again at each pass
 
     def __init__(self, inputs: int, outputs: int, *, scale: float = 1.0) -> None:
         self.inputs = checked_size("inputs", inputs)
@@ -39,10 +40,10 @@ class FullyConnectedLayer(Layer):
         """Return x W + b, (batch, outputs)."""
         weights, bias = self.parameters
         self.input = np.asarray(input_data, self.dtype)
-        output = self.kept("output", (len(input_data), bias.value.size), self.dtype)
-        self.input.dot(weights.value, output)
-        output += bias.value
-        return output
+        self.output = fitting(self.output, (len(input_data), bias.value.size), self.dtype)
+        self.input.dot(weights.value, self.output)
+        self.output += bias.value
+        return self.output
 
     def predict(self, input_data: Array) -> Array:
         """Return x W + b as a new array, (batch, outputs) or (outputs,)."""
@@ -59,8 +60,9 @@ class FullyConnectedLayer(Layer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return E Wᵀ, (batch, inputs)."""
-        error: Array = output_error.dot(self.parameters[0].value.T, self.kept("error", self.input.shape, self.dtype))
-        return error
+        self.error = fitting(self.error, self.input.shape, self.dtype)
+        output_error.dot(self.weights.T, self.error)
+        return self.error
 
     def initial_value(self, name: str) -> Array:
         """Return zeros for the bias, and weights drawn as suits the activation that follows."""
@@ -114,6 +116,7 @@ class ActivationLayer(Layer):
     """
 
     settings = ("activation",)
+    output = error = NO_ARRAY
 
     def __init__(self, activation: Activation | Function, derivative: Function | None = None) -> None:
         self.activation = Activation.of(activation, derivative)
@@ -121,7 +124,7 @@ class ActivationLayer(Layer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return f(x), of the shape of x."""
         self.input = input_data
-        self.output = self.kept("output", input_data.shape, input_data.dtype)
+        self.output = fitting(self.output, input_data.shape, input_data.dtype)
         return self.activation.function(input_data, out=self.output)
 
     def predict(self, input_data: Array) -> Array:
@@ -130,10 +133,10 @@ class ActivationLayer(Layer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return f'(x) · E."""
-        error = self.kept("error", self.output.shape, self.output.dtype)
-        self.activation.slope(self.input, self.output, error)
-        error *= output_error
-        return error
+        self.error = fitting(self.error, self.output.shape, self.output.dtype)
+        self.activation.slope(self.input, self.output, self.error)
+        self.error *= output_error
+        return self.error
 
 
 class LayerNormalisation(Layer):
@@ -152,6 +155,7 @@ class LayerNormalisation(Layer):
     """
 
     settings = ("size", "epsilon")
+    buffers = output = NO_ARRAY
 
     def __init__(self, size: int, *, epsilon: float = 1e-5) -> None:
         if not 0 < epsilon < 1:
@@ -164,9 +168,8 @@ class LayerNormalisation(Layer):
         """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
         # Five arrays in one: there is one look whether they fit the batch.
-        self.output, self.centred, self.stretch, self.error, self.scratch = self.kept(
-            "buffers", (5, *input_data.shape), self.dtype
-        )
+        self.buffers = fitting(self.buffers, (5, *input_data.shape), self.dtype)
+        self.output, self.centred, self.stretch, self.error, self.scratch = self.buffers
         self.inverse = self._centre(np.asarray(input_data, self.dtype), self.centred)
         self.inverse.dot(gain.value[None], self.stretch)
         np.multiply(self.centred, self.stretch, out=self.output)
@@ -228,6 +231,7 @@ class DropoutLayer(Layer):
     """
 
     settings = ("rate",)
+    output = error = factors = NO_ARRAY
 
     def __init__(self, rate: float = 0.5) -> None:
         if isinstance(rate, bool) or not isinstance(rate, int | float) or not 0 <= rate < 1:
@@ -239,8 +243,8 @@ class DropoutLayer(Layer):
         self.rng = self.rng or np.random.default_rng(0)
         # Drawn in the order that images have in memory; for small arrays the order does not matter.
         drawn = self.rng.random(input_data.shape[::-1], np.float32).T
-        self.factors = self.kept("factors", input_data.shape, input_data.dtype)
-        self.output = self.kept("output", input_data.shape, input_data.dtype)
+        self.factors = fitting(self.factors, input_data.shape, input_data.dtype)
+        self.output = fitting(self.output, input_data.shape, input_data.dtype)
         np.multiply(drawn >= self.rate, 1 / (1 - self.rate), out=self.factors, casting="same_kind")
         np.multiply(input_data, self.factors, out=self.output)
         return self.output
@@ -251,7 +255,7 @@ class DropoutLayer(Layer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return the error of what was kept, enlarged alike, and 0 elsewhere."""
-        self.error = self.kept("error", self.factors.shape, self.factors.dtype)
+        self.error = fitting(self.error, self.factors.shape, self.factors.dtype)
         np.multiply(output_error, self.factors, out=self.error)
         return self.error
 

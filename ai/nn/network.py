@@ -1,9 +1,8 @@
 """Neural network: a list of layers, the cost to minimise, and one flat vector of all parameters."""
 
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +14,7 @@ from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
 from ai.nn.storage import read_network, save_network
 
+N = TypeVar("N", bound="NeuralNetwork")
 IMAGES = 250  # predicted at a time: each takes some 100 KB on its way
 
 
@@ -36,50 +36,57 @@ class NeuralNetwork:
     ) -> None:
         self.cost = Cost.of(function, derivative)
         self.layers: list[Layer] = []
-        self._takes: tuple[int, ...] = ()  # shape of an example; none as long as any will do
         self.rng = rng or np.random.default_rng(0)
         self.dtype = np.dtype(dtype)
-        if self.dtype.kind != "f":
-            raise ValueError(f"a network computes with floating-point numbers, not {self.dtype}")
+        if self.dtype not in (np.float32, np.float64):
+            raise ValueError(f"a network computes with float32 or float64, floating-point numbers, not {self.dtype}")
+        self._takes: tuple[int, ...] = ()  # shape of an example; none as long as any will do
+        self._take(())
 
-    def add_layer(self, layer: Layer) -> Self:
-        """Append a layer.
+    def add_layer(self, *layers: Layer) -> Self:
+        """Append a layer, or several in a row.
 
-        Raises ValueError if it does not fit the one before, belongs to a network already, or makes this one too large.
+        Raises ValueError, and appends none, if one does not fit the one before, belongs to a network already, or makes
+        this one too large.
         """
-        check_next(self.layers, layer)
-        layer.join(self)
-        if isinstance(layer, ActivationLayer):
-            for before in self.layers:
-                before.initialise = before.initialise or layer.activation.initialise
-        if not self._takes and layer.inputs is not None:
-            self._takes = layer.inputs if isinstance(layer.inputs, tuple) else (layer.inputs,)
-        self.layers.append(layer)
-        self.__dict__.pop("_flat", None)  # made anew when needed
-        for each in self.layers:
-            each.__dict__.pop("parameters", None)
+        for place, layer in enumerate(layers):
+            check_next([*self.layers, *layers[:place]], layer)
+            if layer.in_network or layer in layers[:place]:
+                kind = type(layer).__name__
+                raise ValueError(f"this {kind} belongs to a network already; make another, or copy that one")
+        for layer in layers:
+            if isinstance(layer, ActivationLayer):
+                for before in (*self.layers, *layers[: layers.index(layer)]):
+                    before.suit(layer.activation.initialise)
+        self._take(layers)
         return self
+
+    def _take(self, layers: Sequence[Layer]) -> None:
+        """Append layers that fit, and move all parameters into one flat vector."""
+        for layer in layers:
+            layer.in_network, layer.dtype, layer.rng = True, self.dtype, layer.rng or self.rng.spawn(1)[0]
+            if not self._takes and layer.inputs is not None:
+                self._takes = layer.inputs if isinstance(layer.inputs, tuple) else (layer.inputs,)
+        self.layers += layers
+        parameters = [parameter for layer in self.layers for parameter in layer.parameters]
+        self._values, self._gradients = pack(parameters, self.dtype)
 
     @property
     def values(self) -> Array:
         """All parameters in one flat vector; the layers' arrays are views of it, so writing changes them."""
-        return self._flat[0]
+        return self._values
 
     @values.setter
-    def values(self, values: Array) -> None:
+    def values(self, values: npt.ArrayLike) -> None:
         values = np.asarray(values)
-        if values.shape != self._flat[0].shape:
-            raise ValueError(f"the network has {self._flat[0].size:,} parameters, in one row, not {values.shape}")
-        self._flat[0][...] = values
+        if values.shape != self._values.shape:
+            raise ValueError(f"the network has {self._values.size:,} parameters, in one row, not {values.shape}")
+        self._values[...] = values
 
     @property
     def gradients(self) -> Array:
         """The gradients that the last backward pass left, in the order of `values`."""
-        return self._flat[1]
-
-    @cached_property
-    def _flat(self) -> tuple[Array, Array]:
-        return pack((parameter for layer in self.layers for parameter in layer.drawn), self.dtype)
+        return self._gradients
 
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
@@ -87,30 +94,31 @@ class NeuralNetwork:
         Inputs of a network for images are (batch, height, width, channels), or without the batch as well.
         Leaves no trace: a backward pass may still follow the last `forward_propagate`.
         """
-        return self._answer(self._input(input_data))
-
-    def _answer(self, data: Array) -> Array:
-        """Return the output for what `_input` has taken."""
-        if data.ndim == 3:
-            one: Array = self._answer(data[None])[0]
-            return one
+        data = self._input(input_data)
         if data.ndim == 2 and len(data) == 1:  # as a vector: in two thirds of the time
-            answer: Array = self._answer(data[0])[None]
-            return answer
+            return self._through(data[0])[None]
+        if data.ndim == 3:
+            one: Array = self._through(data[None])[0]
+            return one
         if data.ndim == 4 and len(data) > IMAGES:
-            return np.concatenate([self._answer(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
+            return np.concatenate([self._through(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
+        return self._through(data)
+
+    def _through(self, data: Array) -> Array:
         for layer in self.layers:
             data = layer.predict(data)
         return data
 
     def _input(self, given: npt.ArrayLike) -> Array:
         """Return what a network is given, in its own kind of numbers; raises ValueError for what it cannot take."""
-        array = given if isinstance(given, np.ndarray) else np.asarray(given)
-        if array.dtype.kind not in "fiub":
-            raise ValueError(f"a network takes numbers, not {array.dtype} of shape {array.shape}")
-        if self._takes and array.shape != self._takes and array.shape[1:] != self._takes:
+        array = np.asarray(given)
+        if array.dtype != self.dtype:
+            if array.dtype.kind not in "fiub":
+                raise ValueError(f"a network takes numbers, not {array.dtype} of shape {array.shape}")
+            array = array.astype(self.dtype)
+        if array.shape[1:] != self._takes and array.shape != self._takes and self._takes:
             raise ValueError(f"the network takes {self._takes}, or a batch of such, not {array.shape}")
-        return array.astype(self.dtype, copy=False)
+        return array
 
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
         """Return what each layer gives for a batch; the last is what `predict` returns."""
@@ -121,15 +129,17 @@ class NeuralNetwork:
         """Return the derivative of Σ output_error · output by every number of a batch, as a new array of its shape.
 
         With a one-hot error it says which pixels speak for that answer (Simonyan et al. 2014). Nothing is
-        dropped and `gradients` stay as they are, but what the last forward pass kept is overwritten.
+        dropped and `gradients` stay as they are, but what the last forward pass left for the way back is overwritten.
         """
         layers = [layer for layer in self.layers if not isinstance(layer, DropoutLayer)]
+        gradients = self.gradients.copy()
         data: Array = np.asarray(input_data, self.dtype)
         for layer in layers:
             data = layer.forward_propagate(data)
         error: Array = np.asarray(output_error, self.dtype)
         for layer in reversed(layers):
             error = layer.input_error(error)
+        self.gradients[...] = gradients
         return np.array(error)
 
     def forward_propagate(self, input_data: npt.ArrayLike) -> Array:
@@ -205,13 +215,11 @@ class NeuralNetwork:
 
     def copy(self) -> Self:
         """Return an independent network with equal parameters."""
-        twin = type(self)(self.cost, dtype=self.dtype)
-        for layer in self.layers:
-            twin.add_layer(type(layer)(**layer.arguments()))
-        twin.values = self.values
+        make, parts = self.__reduce__()
+        twin: Self = make(*parts)
         return twin
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Copy and pickle what `copy` copies: parameters stay views of one flat vector, and buffers are left out."""
         layers = [(type(layer), layer.arguments()) for layer in self.layers]
         return _restored, (type(self), self.cost, layers, self.dtype, self.values.copy())
@@ -227,21 +235,22 @@ class NeuralNetwork:
     @classmethod
     def load(cls, folder: str | Path) -> Self:
         """Read a network from its folder; raises ModelFormatError, which names all that is wrong with it."""
-        cost, layers, dtype = read_network(folder)
-        network = cls(cost, dtype=dtype)
-        for layer in layers:
-            network.add_layer(layer)
-        return network
+        return _made(cls, *read_network(folder))
 
 
 def _restored(
-    kind: type[NeuralNetwork], cost: Cost, layers: list[tuple[type[Layer], dict[str, Any]]], dtype: Any, values: Array
-) -> NeuralNetwork:
+    kind: type[N], cost: Cost, layers: list[tuple[type[Layer], dict[str, Any]]], dtype: npt.DTypeLike, values: Array
+) -> N:
     """Make a copied or pickled network."""
-    network = kind(cost, dtype=dtype)
-    for layer, arguments in layers:
-        network.add_layer(layer(**arguments))
+    network = _made(kind, cost, [layer(**arguments) for layer, arguments in layers], dtype)
     network.values = values
+    return network
+
+
+def _made(kind: type[N], cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> N:
+    """Make a network of these layers, with parameters as they have them."""
+    network = kind(cost, dtype=dtype)
+    network._take(layers)
     return network
 
 

@@ -1,7 +1,6 @@
 """Parameters of layers: named arrays, each with its gradient, and their initialisation."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,27 +10,54 @@ Array = npt.NDArray[np.floating[Any]]
 Initialise = Callable[[np.random.Generator, int, int], Array]  # draws weights (inputs, outputs)
 
 
-@dataclass(slots=True)
 class Parameter:
-    """One learned array and the gradient of the cost with respect to it, of the same shape and dtype."""
+    """One learned array, and the gradient of the cost with respect to it, of the same shape and dtype.
 
-    name: str
-    value: Array
-    gradient: Array
+    Assigning to either writes into the array that is there, since a network has it in its flat vector.
+    """
+
+    def __init__(self, name: str, value: Array) -> None:
+        self.name = name
+        self._value, self._gradient = value, np.zeros_like(value)
+
+    @property
+    def value(self) -> Array:
+        """What is learned."""
+        return self._value
+
+    @value.setter
+    def value(self, value: npt.ArrayLike) -> None:
+        self._value[...] = self._fitting(value)
+
+    @property
+    def gradient(self) -> Array:
+        """What the last backward pass left."""
+        return self._gradient
+
+    @gradient.setter
+    def gradient(self, gradient: npt.ArrayLike) -> None:
+        self._gradient[...] = self._fitting(gradient)
+
+    def _fitting(self, given: npt.ArrayLike) -> npt.NDArray[Any]:
+        array = np.asarray(given)
+        if array.shape != self._value.shape or array.dtype.kind not in "fiub":
+            raise ValueError(f"{self.name} are numbers of shape {self._value.shape}, not {array.dtype} {array.shape}")
+        return array
+
+    def move(self, value: Array, gradient: Array) -> None:
+        """Write both into other arrays of this shape, and keep them there from now on."""
+        value[...], gradient[...] = self._value, self._gradient
+        self._value, self._gradient = value, gradient
 
 
-def pack(parameters: Iterable[Parameter], dtype: npt.DTypeLike) -> tuple[Array, Array]:
+def pack(parameters: Sequence[Parameter], dtype: npt.DTypeLike) -> tuple[Array, Array]:
     """Move the parameters into two flat vectors, values and gradients, of which they become views."""
-    parameters = list(parameters)
     size = sum(parameter.value.size for parameter in parameters)
     values, gradients = np.zeros(size, dtype), np.zeros(size, dtype)
     start = 0
     for parameter in parameters:
-        part = slice(start, start + parameter.value.size)
-        values[part] = parameter.value.ravel()
-        gradients[part] = parameter.gradient.ravel()
-        parameter.value = values[part].reshape(parameter.value.shape)
-        parameter.gradient = gradients[part].reshape(parameter.value.shape)
+        shape, part = parameter.value.shape, slice(start, start + parameter.value.size)
+        parameter.move(values[part].reshape(shape), gradients[part].reshape(shape))
         start = part.stop
     return values, gradients
 

@@ -141,8 +141,8 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
         for name, shape in layer.shapes.items():
             with noted(problems, f"{CONFIG}: layer {index}"):
                 array = _read_array(folder, descriptions[index], name, shape, str(dtype))
-                parameters.append(Parameter(name, array, np.zeros_like(array)))
-        layer.drawn = tuple(parameters)
+                parameters.append(Parameter(name, array))
+        layer.parameters = tuple(parameters)
     if problems:
         raise ModelFormatError(folder, problems)
     return cost, list(layers.values()), str(dtype)

@@ -81,11 +81,9 @@ def _curve(run: Any, plan: Plan) -> tuple[list[Point], str]:
 
 def _trained_to(run: Any, mark: int) -> Point:
     """Train a run up to so many decisions or epochs, and measure it; raises FloatingPointError if it diverges."""
-    last = None
-    for progress in Limit(moment=mark * getattr(run, "steps_per_epoch", 1)).run(run):
-        last = progress
+    for _ in Limit(moment=mark * getattr(run, "steps_per_epoch", 1)).run(run):
+        pass
     if isinstance(run, DigitTraining):
         return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
-    score = last.evaluation if last else None
-    score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
+    score = run.evaluation or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
     return Point(run.moment, score.success, score.mean_return)

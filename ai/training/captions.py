@@ -41,39 +41,41 @@ def caption(run: RecentCurves, *, hinted: bool = False, shown: str = "") -> Capt
     """
     if not run.count:
         return None
-    if np.isnan(run.now("success")):
+    if np.isnan(run.now("success_rate")):
         return Caption("unknown")
     rules = sorted(RULES, key=lambda rule: rule.name != shown)
     found = next((rule for rule in rules if not (rule.praises and hinted) and rule.holds(run)), None)
     if found is None:
         return None
-    highest = float(np.nanmax(run.history["success"]))  # as the curve above the caption shows it
-    shares = {"percent": run.now("success"), "before": run.before("success"), "best": highest}
+    highest = float(np.nanmax(run.history["success_rate"]))  # as the curve above the caption shows it
+    shares = {"percent": run.now("success_rate"), "before": run.before("success_rate"), "best": highest}
     return Caption(found.name, {name: 100 * share for name, share in shares.items()})
 
 
 def _gains(run: RecentCurves) -> tuple[float, float]:
     """Return how much the curve has risen over the last share of the run, and its latest number since before."""
-    return run.gained("success"), run.now("success") - run.before("success")
+    return run.gained("success_rate"), run.now("success_rate") - run.before("success_rate")
 
 
 def _rises(run: RecentCurves) -> bool:
     """Whether the curve is well above what it was, and its latest number not as far below its highest since."""
-    return min(_gains(run)) > _CHANGE and run.highest("success") - run.now("success") <= _CHANGE
+    return min(_gains(run)) > _CHANGE and run.highest("success_rate") - run.now("success_rate") <= _CHANGE
 
 
 def _most(column: str) -> Callable[[RecentCurves], bool]:
-    return lambda run: run.now("success") == 0.0 and run.now(column) >= _MOST
+    return lambda run: run.now("success_rate") == 0.0 and run.now(column) >= _MOST
 
 
 # The first that holds is the caption.
 RULES: Final = (
-    CaptionRule("collapsed", lambda run: run.now("success") <= run.best() - 0.4),
+    CaptionRule("collapsed", lambda run: run.now("success_rate") <= run.best() - 0.4),
     CaptionRule("crashes", _most("crashed")),
     CaptionRule("hovers", _most("timed_out")),
     CaptionRule("leaves", _most("out_of_bounds")),
-    CaptionRule("none", lambda run: run.now("success") == 0.0),
-    CaptionRule("high", lambda run: min(run.now("success"), run.last("success")) >= _NEARLY_ALL, praises=True),
+    CaptionRule("none", lambda run: run.now("success_rate") == 0.0),
+    CaptionRule(
+        "high", lambda run: min(run.now("success_rate"), run.last("success_rate")) >= _NEARLY_ALL, praises=True
+    ),
     CaptionRule("rises", _rises, praises=True),
     CaptionRule("falls", lambda run: max(_gains(run)) < -_CHANGE),
     CaptionRule("steady", lambda run: max(map(abs, _gains(run))) <= _CHANGE),

@@ -74,8 +74,8 @@ class RecentCurves:
     def by_hundreds(self) -> Doubles:
         """Return the share that landed of each successive hundred flights of this stage: none counts twice."""
         history = self.history
-        here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
-        episodes, success = history["episodes"][here], history["success"][here]
+        here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success_rate"])
+        episodes, success = history["episodes"][here], history["success_rate"][here]
         if not len(episodes):
             return np.empty(0)
         ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
@@ -100,7 +100,7 @@ class RecentCurves:
         in_force = [each for each in history.setting_changes if self._in_force(each)]
         for change in reversed(in_force):
             row = history.row_at(change.decisions)
-            before = median(history["success"][max(row - 7, 0) : row + 1])
+            before = median(history["success_rate"][max(row - 7, 0) : row + 1])
             same_starts = history["stage"][row] == history["stage"][-1]
             if same_starts and shares.max() <= before - FALLEN:
                 return [each for each in in_force if abs(each.seconds - change.seconds) < 1.0]

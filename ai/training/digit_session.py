@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -11,7 +12,7 @@ import numpy as np
 from ai.digits.training import DigitProgress, DigitTraining
 from ai.digits.validation import ValidationReading
 from ai.nn import Array
-from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
+from ai.training.history import DIGIT_COLUMNS, REVERTED, Validation
 from ai.training.session import Session
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
@@ -43,8 +44,7 @@ class DigitSession(Session[DigitTraining]):
             self._point_at = training.seconds + POINT_SECONDS
             loss, accuracy = np.mean(self._batches, axis=0).tolist()
             self._batches.clear()
-            step, epoch, rate, pace = progress.step, progress.epoch, progress.learning_rate, progress.images_per_second
-            self.record(DigitPoint(training.seconds, step, epoch, loss, accuracy, rate, pace))
+            self.record(replace(progress, loss=loss, accuracy=accuracy))
         if self._looking <= _SHARE * (training.seconds - self._began) and len(training.held_images):
             began = training.clock()
             self._reading = self._reading or ValidationReading(training)

@@ -41,7 +41,7 @@ class HintRule(NamedTuple):
 
 def _damaged(run: RecentCurves) -> bool:
     """Whether steps were far too long at some time, and the network still shows the damage."""
-    if run.damaged_at() is None or run.last("success") > 0.5:
+    if run.damaged_at() is None or run.last("success_rate") > 0.5:
         return False
     return any(sign(run) for sign in (loss_explodes, values_run_away, _collapsed, _crashes, _hovers))
 
@@ -57,15 +57,15 @@ def _collapsed(run: RecentCurves) -> bool:
     """Whether the last hundreds of flights landed far less than the best, none of them flown before a change."""
     best = run.best()
     lost = best >= 0.6 and bool(run.by_hundreds()[-COLLAPSE:].max() <= best - 0.4)
-    return lost and run.since_change() >= 100 * COLLAPSE and run.gained("success") <= _RISES
+    return lost and run.since_change() >= 100 * COLLAPSE and run.gained("success_rate") <= _RISES
 
 
 def _crashes(run: RecentCurves) -> bool:
-    return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("success") <= 0.1
+    return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("success_rate") <= 0.1
 
 
 def _hovers(run: RecentCurves) -> bool:
-    return run.is_late() and run.last("timed_out") >= 0.5 and run.last("success") <= 0.3
+    return run.is_late() and run.last("timed_out") >= 0.5 and run.last("success_rate") <= 0.3
 
 
 def _small_memory(run: RecentCurves) -> bool:
@@ -75,7 +75,7 @@ def _small_memory(run: RecentCurves) -> bool:
 def _overfed(run: RecentCurves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
-    return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("success") >= 0.6
+    return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("success_rate") >= 0.6
 
 
 # Remedies

@@ -11,15 +11,14 @@ from ai.environment import StepResult
 from ai.lander.environment import LanderEnv
 from ai.training.config import in_force
 from ai.training.explanations import Explanations
-from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
+from ai.training.history import COLUMNS, REVERTED, Checkpoint, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import DIVERGED, NetworkState, SwarmState
+from ai.training.messages import DIVERGED, FirstLanding, NetworkState, SwarmState
 from ai.training.session import Session
 from ai.training.tasks import Score
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 NETWORK_SECONDS: Final = 0.25
-NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
 
 
@@ -41,7 +40,7 @@ class LanderSession(Session[Training]):
         self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
-        self._began_learning = training.agent.gradient_steps
+        self._new = not training.agent.decisions
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
 
@@ -59,7 +58,7 @@ class LanderSession(Session[Training]):
 
     def tell(self, progress: Progress) -> None:
         now = self.training.clock()
-        self._tell_validation(progress.evaluation)
+        self._tell_validation(self.training.evaluation)
         if now >= self._shown_at:
             self._shown_at = now + NETWORK_SECONDS
             self.show()
@@ -67,9 +66,9 @@ class LanderSession(Session[Training]):
             self.messages.append(self._swarm_state)
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
-            self.record(self._point(progress))
+            self.record(progress)
         if progress.decisions >= self._checkpoint_at:
-            self.record(self._checkpoint(progress.success_rate))
+            self.record(self._checkpoint(self.training.statistics.success))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
 
@@ -87,7 +86,9 @@ class LanderSession(Session[Training]):
 
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = self._swarm_state_now()
-        self._explanations.follow(self.env.actions, result)
+        slot = self._explanations.follow(self.env.actions, result)
+        if slot is not None and self._new:
+            self.messages.append(FirstLanding(slot, self.training.agent.decisions))
 
     def _swarm_state_now(self) -> SwarmState:
         env, training = self.env, self.training
@@ -96,17 +97,6 @@ class LanderSession(Session[Training]):
         )
         actions, outcome = env.actions.astype(np.int8), env.outcome.astype(np.int8)
         return SwarmState(position, angle, actions, outcome, earned, training.agent.decisions)
-
-    def _point(self, progress: Progress) -> Point:
-        flown = 1.0 if self.training.statistics.known else np.nan
-        agent = self.training.agent
-        learnt = 1.0 if agent.gradient_steps > self._began_learning else np.nan
-        _, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
-        return Point(
-            self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
-            flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, crashed, out_of_bounds, timed_out, progress.parts or NOTHING_PAID,
-        )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:
         agent = self.training.agent

@@ -13,7 +13,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Final, Self
 
 import numpy as np
 
@@ -25,44 +25,42 @@ from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.environment import Env, Floats, StepResult
 from ai.files import count_of, inside, number_of, problem_in, read_json
-from ai.files.knobs import nearest_preset
+from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
-from ai.run import TRAINING_FILE, Run
+from ai.run import TRAINING_FILE, Measured, Run
 from ai.training.config import ANYWHERE, LANDER, Config, load_agent, presets_of
 from ai.training.gym_task import GymTask
 from ai.training.state import MOST, State
 from ai.training.statistics import EpisodeStatistics
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
+PARTS: Final = tuple(REWARDS)
 Network = tuple[Floats, Normalizer | None]  # parameters, and the scale of its observations
 
 
-@dataclass
-class Progress:
-    """Progress of a run after one decision in every environment."""
+@dataclass(frozen=True)
+class Progress(Measured):
+    """Progress of a run after one decision in every environment.
+
+    Unknown are shares and means before the first episode has ended, and what is learned before the first learning step,
+    which after a resumption waits for new memories.
+    """
 
     decisions: int  # of single landers
     steps: int  # of their physics: a decision is several
-    updates: int
-    episodes: int
-    success_rate: float  # of the last 100 episodes, exploration included
-    mean_return: float  # of the same
-    loss: float
-    mean_q: float
-    epsilon: float
+    updates: int  # learning steps
+    episodes: int  # that have ended
+    success_rate: float  # of the last hundred episodes, random actions included; so are the next four
+    mean_return: float  # points of reward
+    crashed: float  # shares: that ended in outcome 2, 3 and 4
+    out_of_bounds: float
+    timed_out: float
+    loss: float  # error of the last learning step
+    mean_q: float  # what the network expects, in scaled points
+    epsilon: float  # share of random actions
     stage: int  # of the curriculum
-    steps_per_second: float  # over the last hundred decisions, by the clock
-    shares: tuple[float, ...]  # of the last 100 episodes that ended in outcome 1, 2, 3 and 4
-    parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
-    evaluation: Score | None = None  # when one is finished
-    best: Score | None = None
-    env: str = LANDER
-
-    def __str__(self) -> str:
-        best = f" best {self.best.figure}" if self.best else ""
-        lander = self.env in (LANDER, ANYWHERE)
-        recent = f"landed {self.success_rate:.0%}" if lander else f"return {self.mean_return:.1f}, mean"
-        return f"{recent} of the last 100, ε {self.epsilon:.2f}, {self.decisions:,} decisions{best}"
+    steps_per_second: float  # over the last hundred decisions
+    parts: tuple[float, ...] = (0.0,) * len(PARTS)  # of the mean return, what each part of the reward has paid
 
 
 class Training(Run):
@@ -75,6 +73,7 @@ class Training(Run):
         validation_episodes: episodes of one; by default, as many as suit the task.
         validation_pace: decisions of its flights after one of the run's; None for all at once.
         evaluated: how many decisions the network had taken that was measured last.
+        evaluation: the score of a validation that ended with the last step, or None.
         best_network: the network of the best score.
         on_step: is shown every step, before ended slots begin anew.
 
@@ -97,6 +96,7 @@ class Training(Run):
         self.validation_episodes = task.validation_episodes if validation_episodes is None else validation_episodes
         self.validation_pace: int | None = None
         self.evaluated: int | None = None
+        self.evaluation: Score | None = None
         self.on_step: Callable[[StepResult], None] | None = None
         agent_rng, env_rng = np.random.default_rng([seed, since] if since else seed).spawn(2)
         replay, optimizer = make_replay(config, task.num_features), make_optimizer(config)
@@ -111,7 +111,8 @@ class Training(Run):
         self.statistics = EpisodeStatistics(self.env.num_envs)
         self.best: Score | None = None
         self.best_network: Network | None = None
-        self._moments: deque[float] = deque(maxlen=100)
+        self._clocked: deque[float] = deque(maxlen=100)  # `seconds` at the last decisions
+        self._began_learning = 0  # gradient steps that were taken before the run began, or went on
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
         self._validated: DeepQAgent | None = None  # while its flights are under way
         self._flights: Trial[Score] | None = None
@@ -135,15 +136,15 @@ class Training(Run):
         """Share of random actions now."""
         return exploration(self.config, self.agent.decisions, self.episodes)
 
-    def advance(self) -> Progress:
+    def take_step(self) -> None:
         """Let every lander take one decision, learn from it, and evaluate if it is time.
 
         Raises DivergenceError, a FloatingPointError, when a number is no longer finite.
         """
-        agent, statistics = self.agent, self.statistics
-        before, epsilon = agent.decisions, self.epsilon
+        agent, statistics, before = self.agent, self.statistics, self.agent.decisions
+        self._clocked.append(self.seconds)
         self.task.update_env(agent.decisions, self.env)
-        each = exploration_of_each(agent.config, epsilon, self.env.num_envs)
+        each = exploration_of_each(agent.config, self.epsilon, self.env.num_envs)
         actions, result = agent.train_step(self.env, self.observation, each, self._held)
         statistics.add(result)
         if self.on_step is not None:
@@ -154,19 +155,35 @@ class Training(Run):
             statistics.finish(result)
             self.observation = self.env.reset(result.ended)
         self._held = np.where(result.ended, 0, actions)
-        evaluation = self._measure(before)
+        self.evaluation = self._measure(before)
+
+    @property
+    def progress(self) -> Progress:
+        agent, statistics, skip = self.agent, self.statistics, self.config.frame_skip
+        flown = 1.0 if statistics.known else np.nan
+        learnt = 1.0 if agent.gradient_steps > self._began_learning else np.nan
+        landed, crashed, out_of_bounds, timed_out = (flown * share for share in statistics.shares)
         return Progress(
-            agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
-            statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
-            statistics.shares, statistics.parts, evaluation, self.best, self.config.env,
+            self.seconds, agent.decisions, agent.decisions * skip, agent.gradient_steps, self.episodes, landed,
+            flown * statistics.mean_return, crashed, out_of_bounds, timed_out, learnt * agent.loss,
+            learnt * agent.mean_q, self.epsilon, self.env.stage, self._pace(), statistics.parts or Progress.parts,
         )  # fmt: skip
 
     def _pace(self) -> float:
-        """Physics steps a second, by the moments of the last hundred decisions."""
-        self._moments.append(self.clock())
-        spent = self._moments[-1] - self._moments[0]
-        steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
-        return steps / spent if spent > 0 else 0.0
+        """Physics steps a second, by the time that the last hundred decisions took."""
+        spent = self.seconds - self._clocked[0] if self._clocked else 0.0
+        return len(self._clocked) * self.env.num_envs * self.config.frame_skip / spent if spent > 0 else 0.0
+
+    def __str__(self) -> str:
+        """Say how it stands."""
+        progress, best = self.progress, f" best {self.best.figure}" if self.best else ""
+        if not self.statistics.known:
+            recent = "no episode has ended"
+        elif self.config.env in (LANDER, ANYWHERE):
+            recent = f"landed {progress.success_rate:.0%} of the last 100"
+        else:
+            recent = f"return {progress.mean_return:.1f}, mean of the last 100"
+        return f"{recent}, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
 
     def apply_live(self, config: Config) -> None:
         """Take over the live knobs of another configuration; what was paid otherwise is forgotten."""
@@ -263,7 +280,7 @@ class Training(Run):
             self.evaluate()
         agent, config = self.agent, self.config
         described = {
-            "env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed,
+            "env": config.env, **config.described(presets_of(config.env)), "seed": self.seed,
             "decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes,
             "landings": self.env.landings, "seconds": round(self.seconds, 3),
             "best": self.best.to_json() if self.best else None,
@@ -323,6 +340,7 @@ class Training(Run):
         self.observation = self.env.reset()  # where flights begin depends on the landings
         self.seconds = float(number_of(described["seconds"], 0))
         self.agent.copy_from(last)
+        self._began_learning = self.agent.gradient_steps
 
     @property
     def buffers(self) -> dict[str, ReplayBuffer]:

@@ -28,14 +28,6 @@ PACE: Final = 2_000_000  # bytes a second that are written at most, in the mean
 R = TypeVar("R", bound=Run)
 
 
-def step(run: Run) -> Any:
-    """Take one step of a run, and count the time that it took; return the progress."""
-    began = run.clock()
-    progress = run.advance()
-    run.seconds += run.clock() - began
-    return progress
-
-
 def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
     """Go on with a run of a kind that is kept in a folder, with the memory that its state beside that holds.
 
@@ -83,7 +75,7 @@ class Limit:
     def run(self, run: Run) -> Iterator[Any]:
         """Advance until the time or the steps are used up."""
         while self.share(run) < 1.0:
-            yield step(run)
+            yield run.advance()
 
 
 class Keeper:

@@ -1,15 +1,16 @@
 """A run that is watched and steered while it goes on, of any kind.
 
-A session is pulled as a generator (`Session.live`): each turn takes one step of the run, and yields its messages. What
-is around every run is here: how it begins and ends, knobs, history, files. `lander_session` and `digit_session` say
-what is shown of each kind, and which further commands it knows.
+A session is an iterator (`Session.live`): each turn carries out the commands of its inbox, or takes one step of the
+run, and returns its messages. What is around every run is here: how it begins and ends, knobs, history, files.
+`lander_session` and `digit_session` say what is shown of each kind, and which further commands it knows.
 """
 
 from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, ClassVar, Final, Generic, Self, TypeVar
@@ -17,14 +18,13 @@ from typing import Any, ClassVar, Final, Generic, Self, TypeVar
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
 from ai.training.messages import Command, Refused, RunStarted, problem_of
-from ai.training.run import Keeper, step
+from ai.training.run import Keeper
 from ai.training.run import resume as resume_run
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
 R = TypeVar("R", bound=Run)
 Commands = dict[str, Callable[..., None]]
-Turns = Generator[tuple[Any, ...], Command | None, None]
 
 
 class Session(ABC, Generic[R]):
@@ -35,7 +35,8 @@ class Session(ABC, Generic[R]):
         columns: what its history measures.
         commands: the method that carries out each command, by its name; a subclass adds its own. One that raises
             OSError, ValueError or FloatingPointError has changed nothing.
-        messages: to be yielded with the next turn.
+        inbox: commands that wait for their turn.
+        messages: to be returned with the next turn.
 
     """
 
@@ -46,11 +47,14 @@ class Session(ABC, Generic[R]):
         self.training, self.keep = training, keep
         self.history = History.read(source, self.columns) if source else History(self.columns)
         self.keeper = Keeper(training, keep, self.history)
+        self.inbox: deque[Command] = deque()
         self.messages: list[Any] = []
+        self._begun = self._finished = self._closed = False
+        self._ending: Iterator[None] | None = None
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
     @classmethod
-    def of(
+    def live(
         cls, config: Any, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None,
         clock: Callable[[], float] = time.monotonic, **options: Any,
     ) -> Self:  # fmt: skip
@@ -63,12 +67,6 @@ class Session(ABC, Generic[R]):
         training = resume_run(kind, resume, **options) if resume else kind(config, seed, **options)
         training.clock = clock
         return cls(training, keep, resume)
-
-    @classmethod
-    def live(cls, config: Any, seed: int = 0, **options: Any) -> Turns:
-        """Lead a session, made as by `of`."""
-        session = cls.of(config, seed, **options)
-        yield from session.lead()
 
     # What a kind says
 
@@ -88,53 +86,68 @@ class Session(ABC, Generic[R]):
         """Put the networks back to the last good ones, when training has diverged."""
         self.training.restore_best()
 
-    def end(self) -> None:
-        """Keep what has not been kept, and wait until it is on the disk."""
-        self.keeper.end()
-
     # What is around it
 
-    def lead(self) -> Turns:
-        """Take the run to its end, or without end; every turn yields the messages of one step.
+    def __iter__(self) -> Self:
+        return self
 
-        The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
-        without a step, and yields the answer. The run is kept now and then, when it is over, and when the generator is
-        closed. Raises FloatingPointError, which names the learning step and the likely cause, when training diverges.
+    def __next__(self) -> tuple[Any, ...]:
+        """Carry out the commands of the inbox, or take a step of the run or of its end; return the messages.
+
+        The first turn only says how the run begins. The run is kept now and then, when it is over, and when the session
+        is closed. Raises FloatingPointError, which names the learning step and the likely cause, when training
+        diverges.
         """
         training = self.training
         try:
-            self.messages.insert(
-                0, RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
-            )
-            self.show()
-            command = yield self._answer(None)
-            while not (training.done or command == ("finish",)):
-                if command is None:
-                    self.tell(step(training))
-                    self.messages += self.keeper.go_on(training.clock())
-                command = yield self._answer(command)
-            for _ in self.last_words():
-                while command is not None:
-                    command = yield self._answer(command)
-                command = yield self._answer(None)
-            while command is not None:
-                command = yield self._answer(command)
+            if self._closed:
+                raise StopIteration
+            if self.inbox:
+                while self.inbox:
+                    self._carry_out(self.inbox.popleft())
+            elif not self._begun:
+                self._begin()
+            elif self._ending is None and not (training.done or self._finished):
+                self.tell(training.advance())
+                self.messages += self.keeper.go_on(training.clock())
+            else:
+                self._ending = self._ending or self.last_words()
+                next(self._ending)
         except FloatingPointError:
             self.go_back()
+            self.close()
             raise
-        finally:
-            self.end()
-
-    def _answer(self, command: Command | None) -> tuple[Any, ...]:
-        """Carry out a command, if there is one, or tell why it cannot be; return all messages."""
-        if command is not None:
-            name, *arguments = command
-            try:
-                self.commands[name](self, *arguments)
-            except (OSError, ValueError, FloatingPointError) as error:
-                self.messages.append(Refused(command, problem_of(error)))
+        except BaseException:
+            self.close()
+            raise
         messages, self.messages = tuple(self.messages), []
         return messages
+
+    def send(self, command: Command) -> tuple[Any, ...]:
+        """Take the turn of a command; return the messages."""
+        self.inbox.append(command)
+        return next(self)
+
+    def close(self) -> None:
+        """Keep what has not been kept, and wait until it is on the disk."""
+        if not self._closed:
+            self._closed = True
+            self.keeper.end()
+
+    def _begin(self) -> None:
+        training, self._begun = self.training, True
+        self.messages.insert(
+            0, RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
+        )
+        self.show()
+
+    def _carry_out(self, command: Command) -> None:
+        """Carry out a command, or tell why it cannot be."""
+        name, *arguments = command
+        try:
+            self.commands[name](self, *arguments)
+        except (OSError, ValueError, FloatingPointError) as error:
+            self.messages.append(Refused(command, problem_of(error)))
 
     def record(self, entry: Entry) -> None:
         """Add an entry to the history, and tell it."""
@@ -178,5 +191,6 @@ class Session(ABC, Generic[R]):
 
     def _finish(self) -> None:
         """Take no more steps: keep the run, measure it, and end."""
+        self._finished = True
 
     commands: ClassVar[Commands] = {"change": change, "save": save, "autosave_to": _autosave_to, "finish": _finish}

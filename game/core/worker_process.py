@@ -10,14 +10,14 @@ import pickle
 import signal
 import time
 import traceback
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import cycle
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
 from threading import Thread
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 HEARTBEAT: Final = 1.0  # seconds after which it answers even without messages
 GRACE: Final = 3.0  # seconds to end in once the window has closed
@@ -28,7 +28,21 @@ NICENESS: Final = 5  # the window goes first
 _LONGEST: Final = 300  # characters of a problem: an error's text can have any length
 
 Order = tuple[str, Any]
-Turns = Generator[Iterable[Any] | None, Any, None]
+
+
+class Turns(Protocol):
+    """What a worker pulls: a generator that takes commands, or what looks like one."""
+
+    def __next__(self) -> Iterable[Any] | None:
+        """Take a turn; return its messages."""
+
+    def send(self, command: Any, /) -> Iterable[Any] | None:
+        """Take a turn that carries out a command; return its messages."""
+
+    def close(self) -> object:
+        """End: there are no more turns."""
+
+
 Function = Callable[..., Turns]
 
 

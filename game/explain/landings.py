@@ -51,8 +51,9 @@ class Landings:
     @classmethod
     def of(cls, decision: SharedDecision) -> Landings:
         """Return those of one lander's decision by futures."""
-        from ai.copilot.futures import DECISION_STEPS, KEYS, Push
+        from ai.copilot.futures import DECISION_STEPS
         from ai.copilot.guardian import decisions_of
+        from ai.lander.push import KEYS, Push
         from engine import DT
 
         assert decision.known is not None

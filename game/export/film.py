@@ -66,7 +66,7 @@ def film(
         OSError: the file can't be written, or the disk is full.
 
     """
-    last = len(record.recording.actions) + _AFTER
+    last = len(record.recording.pushes) + _AFTER
     steps = [*range(0, last, EVERY), last]
     temporary = unfinished(path)
     path.parent.mkdir(parents=True, exist_ok=True)

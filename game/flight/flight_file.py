@@ -1,6 +1,6 @@
-"""File format of a flight: its start, the action of each physics step, and its outcome.
+"""File format of a flight: its start, the push of each physics step, and its outcome.
 
-A flight follows from its start and its actions, bit for bit, so only these are stored, in text that a person can
+A flight follows from its start and its pushes, bit for bit, so only these are stored, in text that a person can
 read. A file can do no more than be replayed.
 """
 
@@ -11,12 +11,14 @@ import json
 import os
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final, TypeVar
 
 from ai.files import (
     OneOf,
+    OtherVersionError,
     Share,
     Sized,
     Within,
@@ -28,15 +30,16 @@ from ai.files import (
     read_text,
     write_text,
 )
-from ai.flights.recording import LONGEST, STEPS, End, LegAsList, Recording, Shares, Start, StickHolder
+from ai.flights.recording import LONGEST, End, LegAsList, Recording, Start, StickHolder
 from ai.flights.verification import COURSES
-from ai.lander.environment import NUM_ACTIONS, Outcome
+from ai.lander.environment import Outcome
+from ai.lander.push import STEPS, Push
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.core import texts
 
 T = TypeVar("T")
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 6
+VERSION: Final = 7
 _LARGEST: Final = 2_000_000  # bytes
 LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
@@ -121,11 +124,10 @@ class Record:
 class _FlightFile(Start):
     format: str
     version: int
-    actions: str
+    pushes: str
     hands: str
     end: End
     entry: Entry
-    shares: str = ""
     leg: LegAsList = None
 
 
@@ -138,6 +140,8 @@ def read(path: Path) -> Record:
     except OSError as error:
         said = texts.FLIGHT_TOO_LARGE if error.errno == errno.EFBIG else error.strerror or error
         raise ValueError(f"{path.name}: {said}") from error
+    except OtherVersionError as error:
+        raise ValueError(f"{path.name}: {error}") from error
     except ValueError as error:
         raise ValueError(texts.FLIGHT_DAMAGED.format(name=path.name, problem=brief(error))) from error
 
@@ -151,8 +155,9 @@ def to_text(record: Record) -> str:
     """Return a record as the text of a flight's file."""
     recording = record.recording
     saved = {"format": FORMAT, "version": VERSION} | recording.start() | {
-        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
-        "shares": _packed_shares(recording), "end": record.end, "entry": asdict(record.entry),
+        "pushes": _packed(f"{push.main:.0f},{push.side:.0f}" for push in recording.pushes),
+        "hands": _packed(hand.value for hand in recording.hands),
+        "end": record.end, "entry": asdict(record.entry),
     }  # fmt: skip
     return json.dumps(saved, indent=1) + "\n"
 
@@ -162,17 +167,19 @@ def from_text(text: str) -> Record:
     values = parse_json(text)
     try:
         check_header(values, FORMAT, VERSION)
+    except OtherVersionError as error:
+        held = brief(values.get("version"), 20)
+        raise OtherVersionError(texts.FLIGHT_OTHER_VERSION.format(found=held, version=VERSION)) from error
     except ValueError as error:
-        raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
+        raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT)) from error
     file = read_as(_FlightFile, values)
     if file.entry.course not in COURSES:
         raise ValueError(texts.FLIGHT_MISSION.format(name=brief(file.entry.course, 40)))
-    actions = [int(word) for word in _unpacked(file.actions)]
+    pushes = [_push(word) for word in _unpacked(file.pushes)]
     hands = [StickHolder(word) for word in _unpacked(file.hands)]
-    if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):
+    if len(pushes) != len(hands):
         raise ValueError(texts.FLIGHT_ACTIONS)
-    shares = _unpacked_shares(file.shares, len(actions))
-    return Record(Recording.begun(file, file.leg, actions, hands, shares), file.entry, file.end)
+    return Record(Recording.begun(file, file.leg, pushes, hands), file.entry, file.end)
 
 
 def _packed(words: Iterable[Any]) -> str:
@@ -189,24 +196,9 @@ def _unpacked(text: str) -> list[str]:
     return [word for (word, _), count in zip(runs, counts, strict=True) for _ in range(count)]
 
 
-def _packed_shares(recording: Recording) -> str:
-    """Return the shares of thrust of every step, as "main,side" or "-" for all of the action's; empty if all are."""
-    if not recording.shares:
-        return ""
-    shares = (recording.shares.get(step) for step in range(len(recording.actions)))
-    return _packed("-" if each is None else f"{each[0]},{each[1]}" for each in shares)
-
-
-def _unpacked_shares(text: str, steps: int) -> dict[int, Shares]:
-    """Decode the output of `_packed_shares`; raises ValueError for bad input."""
-    words = _unpacked(text)
-    shares: dict[int, Shares] = {}
-    for step, word in enumerate(words):
-        if word != "-":
-            main, side = (int(share) for share in word.split(","))
-            shares[step] = main, side
-    if (words and len(words) != steps) or not all(
-        0 <= main <= STEPS and -STEPS <= side <= STEPS for main, side in shares.values()
-    ):
+@lru_cache(maxsize=256)
+def _push(word: str) -> Push:
+    main, side = (int(part) for part in word.split(","))
+    if not (0 <= main <= STEPS and -STEPS <= side <= STEPS):
         raise ValueError(texts.FLIGHT_ACTIONS)
-    return shares
+    return Push(main, side)

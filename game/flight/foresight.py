@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import Final
 
-from ai.copilot.futures import DECISION_STEPS, KEYS, Flying, Lookahead, Plan
+from ai.copilot.futures import DECISION_STEPS, Flying, Lookahead, Plan
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
+from ai.lander.push import KEYS
 from ai.lander.route import Route
 from engine import DT
 from game.flight.networks import Policy

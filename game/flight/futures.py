@@ -17,14 +17,14 @@ from typing import Final, NamedTuple
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.normalizer import Normalizer
-from ai.copilot.futures import KEYS, Future, Lookahead, Opening, Push
+from ai.copilot.futures import Future, Lookahead, Opening
 from ai.environment import Floats
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
 from game.core import texts
 from game.core.worker import Worker, WorkerState
-from game.core.worker_process import Turns
 
 _CORES: Final = 2  # with fewer, the futures would take the time that the window needs
 _AT_A_TIME: Final = 8  # decisions, of less than a millisecond together, between two looks for requests
@@ -149,7 +149,7 @@ class _Order:
     def __init__(self, request: Request, lookahead: Lookahead, found: dict[Push, int]) -> None:
         self._request, self._lookahead, self._found = request, lookahead, found
         self._asked: Push | None = request.asked
-        _, main, side = request.asked
+        main, side = request.asked
         self._left = sorted(KEYS, key=lambda key: (found.get(key, 0), hypot(key.main - main, key.side - side)))
         self._guesses = False  # whether what is flown now was not asked for
         self.flown = self._fly()
@@ -172,7 +172,7 @@ class _Order:
             self._found[push] = number
 
 
-def fly_ahead() -> Turns:
+def fly_ahead() -> Generator[Iterable[Found] | None, object, None]:
     """Fly the futures of the latest request; for a `Worker`."""
     sys.setswitchinterval(_SWITCH)
     lookahead = Lookahead(DeepQAgent())

@@ -4,63 +4,53 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import hypot
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.copilot.copilot import SharedDecision
-from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Here, Opening, Push
+from ai.agent.decision import Decision
+from ai.copilot.copilot import CoPilot, SharedDecision
+from ai.copilot.futures import DECISION_STEPS, FlownAhead, Future, Here, Opening
 from ai.copilot.guardian import decisions_of
-from ai.flights.recording import STEPS, Shares, StickHolder, full
+from ai.environment import Doubles
+from ai.flights.recording import StickHolder
 from ai.lander.moment import Moment
-from ai.lander.pilots import COAST
+from ai.lander.push import KEYS, STEPS, Push
 from ai.lander.route import Route
-from ai.lander.rules import ACTION_SHARES
+from game.flight.choosers import Choice, seen_by
 from game.flight.networks import Policy
 
 if TYPE_CHECKING:
+    from game.flight.choosers import Crew
     from game.flight.flight import Flight
 
 _SHORT: Final = 8.0  # seconds before time is out, in which no network may be able to land
 _SOON: Final = 0.5  # seconds within which it must be known that no network lands, to be why no plan is held
 _PATIENCE: Final = 180  # steps for which a craft hangs on until a plan is found
-_NEAR: Final = 0.25  # shares of thrust between a position of the stick and one that is flown in its place
-
-
-def push_of(action: int, shares: Shares | None = None) -> Push:
-    """Return what a step pushes, by its action and its shares of thrust, or all that the action asks for."""
-    main, side = ACTION_SHARES[action].tolist() if shares is None else (shares[0] / STEPS, shares[1] / STEPS)
-    return Push(action, main, side)
-
-
-def shares_of(push: Push) -> Shares | None:
-    """Return the shares of thrust of a push as a flight records them; None for all that its action asks for."""
-    shares = round(STEPS * push.main), round(STEPS * push.side)
-    return None if shares == full(push.action) else shares
+_NEAR: Final = STEPS / 4  # between a position of the stick and one that is flown in its place
+_NOTHING: Final = Push()
 
 
 class Taps:
     """What was pressed since the last decision: an engine that was tapped between two decisions counts in the next."""
 
     def __init__(self) -> None:
-        self._now, self._tapped = [0.0, 0.0], [0.0, 0.0]  # shares of main engine and jets
+        self._now = self._tapped = _NOTHING
 
     def follow(self, push: Push) -> None:
         """Follow one step's stick."""
-        for engine, share in enumerate(push[1:]):
-            if share and not self._now[engine]:
-                self._tapped[engine] = share
-            self._now[engine] = share
+        main, side = self._tapped
+        before, self._now = self._now, push
+        self._tapped = Push(main if before.main else push.main or main, side if before.side else push.side or side)
 
     @property
     def asked(self) -> Push:
         """What the stick asks for in the decision that begins."""
-        main, side = (now or tapped for now, tapped in zip(self._now, self._tapped, strict=True))
-        return Push.of(main, side)
+        return Push(self._now.main or self._tapped.main, self._now.side or self._tapped.side)
 
     def forget(self) -> None:
         """Forget the taps: they are flown."""
-        self._tapped = [0.0, 0.0]
+        self._tapped = _NOTHING
 
 
 class Guard:
@@ -79,144 +69,156 @@ class Guard:
 
     """
 
-    def __init__(self, flight: Flight, ahead: FlownAhead) -> None:
-        self._flight, self.ahead = flight, ahead
+    def __init__(self, crew: Crew, ahead: FlownAhead) -> None:
+        self._crew, self.ahead = crew, ahead
         self._taps = Taps()
         self.push: Push | None = None
         self.saves = False
         self.waits = False
         self.decisions = self.late = self.waited = 0
         self.bare: tuple[float, str] | None = None
-        self._wish = KEYS[COAST]  # what was asked for in the decision that is flown now
+        self._wish = _NOTHING  # what was asked for in the decision that is flown now
         self._decision: SharedDecision | None = None
+        self._alone: Decision | None = None  # what the network would do
         self._hung = 0  # steps for which the craft has hung although something was asked for
         self._moment = -1  # steps flown when the futures asked for last begin
         self._flown_by: tuple[object, ...] = ()  # and what they are flown by
 
     @property
-    def acts(self) -> bool:
-        """Whether a guardian goes by futures now; it begins with a decision, every fourth step."""
-        copilot = self._flight.copilot
+    def hand(self) -> StickHolder:
+        """Who holds the stick."""
+        return self._crew.hand
+
+    def acts(self, flight: Flight[Any]) -> bool:
+        """Return whether a guardian goes by futures now; it begins with a decision, every fourth step."""
+        copilot = self._crew.copilot
         if copilot is None or copilot.assist == 0 or self.ahead.problem:
-            if self.push and not self._flight.over:
-                self.bare = self._seconds, "process" if self.ahead.problem else "off"
+            if self.push and not flight.over:
+                self.bare = _seconds(flight), "process" if self.ahead.problem else "off"
             self.push, self._moment = None, -1
             return False
-        return self.push is not None or self._begins
+        return self.push is not None or _begins(flight)
 
     @property
     def safe(self) -> bool:
         """Whether a plan that lands is held, so that nobody can crash the flight."""
         return self.push is not None and self._decision is not None and bool(np.all(self._decision.held))
 
-    @property
-    def _begins(self) -> bool:
-        return len(self._flight.recording.actions) % DECISION_STEPS == 0
-
-    @property
-    def ready(self) -> bool:
-        """Whether a craft that hangs may go: it is known whether the network lands, or that takes too long."""
-        if not (self.acts and self._begins) or self.safe or self._hung >= _PATIENCE:
+    def ready(self, flight: Flight[Any]) -> bool:
+        """Return whether a craft that hangs may go: it is known whether the network lands, or that takes too long."""
+        if not (self.acts(flight) and _begins(flight)) or self.safe or self._hung >= _PATIENCE:
             return True
-        known = self.ahead.known() if self._moment == self._here else {}
+        known = self.ahead.known() if self._moment == _here(flight) else {}
         return any(future.plan for future in known.values()) or all(key in known for key in KEYS)
 
-    def hang(self, held: int) -> None:
-        """Let the futures of the present moment be flown while the craft hangs, and `held` is the action asked for."""
-        if not self.acts or not self._begins or self._flight.over:
+    def hang(self, flight: Flight[Any], asked: Push) -> None:
+        """Let the futures of the present moment be flown while the craft hangs, and the stick asks for that."""
+        if not self.acts(flight) or not _begins(flight) or flight.over:
             return
-        self._hung += held != COAST
-        if self._moment != self._here or self._flown_by != self._flyer:
-            self._ask((), push_of(held))
+        self._hung += asked != _NOTHING
+        if self._moment != _here(flight) or self._flown_by != self._flyer(flight):
+            self._ask(flight, (), asked)
         else:
-            self.ahead.hint(push_of(held))
+            self.ahead.hint(asked)
 
-    def choose(self, by: StickHolder, shares: Shares | None) -> tuple[int, StickHolder, Shares | None]:
-        """Return the next step's action, who chose it, and its shares of thrust, or None for all of it."""
-        flight = self._flight
-        if by is StickHolder.HUMAN:
-            self._taps.follow(push_of(flight.asked, shares))
-        if self._begins:
-            self._decide(by)
-        elif by is StickHolder.HUMAN:
-            self.ahead.hint(push_of(flight.asked, shares))
-        flight.decision = decision = self._decision
-        assert self.push
-        assert decision
-        if by is StickHolder.NETWORK:
-            flight.asked = COAST
-            return self.push.action, by, shares_of(self.push)
-        flight.asked, flight.overridden = int(decision.pilot[0]), bool(decision.overridden[0])
-        return self.push.action, StickHolder.NETWORK if flight.overridden else by, shares_of(self.push)
+    def choose(self, flight: Flight[Any]) -> Choice:
+        """Return the next step's push, which is decided every fourth step."""
+        by_hand, likely = self.hand is StickHolder.HUMAN, None
+        if by_hand:
+            self._taps.follow(flight.asked)
+        if _begins(flight):
+            likely = self._decide(flight, by_hand)
+        elif by_hand:
+            self.ahead.hint(flight.asked)
+        decision = self._decision
+        assert self.push is not None
+        assert decision is not None
+        if not by_hand:
+            return Choice(self.push, self.hand, self._alone)
+        overridden = bool(decision.overridden[0])
+        by = StickHolder.NETWORK if overridden else self.hand
+        return Choice(self.push, by, decision, self._wish, overridden, likely)
 
-    def _decide(self, by: StickHolder) -> None:
-        """Decide what is flown in the next four steps, and let the futures after them be flown meanwhile."""
-        flight, flight.alone = self._flight, None
-        assert flight.copilot is not None
-        known: Mapping[Push, Future] = self.ahead.known() if self._moment == self._here else {}
-        stick = self._taps.asked if by is StickHolder.HUMAN else push_of(flight.ask_network())
+    def _decide(self, flight: Flight[Any], by_hand: bool) -> Doubles | None:
+        """Decide what is flown in the next four steps, and let the futures after them be flown meanwhile.
+
+        Returns how likely each pad is meant by the person; None while the network has the stick.
+        """
+        copilot, alone = self._copilot, self._crew.alone
+        assert alone is not None
+        known: Mapping[Push, Future] = self.ahead.known() if self._moment == _here(flight) else {}
+        self._alone = None if by_hand else alone.decide(flight)
+        stick = KEYS[int(self._alone.action[0])] if self._alone else self._taps.asked
         held = self.safe
-        self._wish = wish = self._wished(nearest(stick, known), known) if by is StickHolder.HUMAN else stick
-        seen, around = flight.seen()
-        pilot, pushed = np.array([wish.action]), np.array([wish[1:]])
-        self._decision = decision = flight.copilot.decide(seen, pilot, around, pushed, flight.env, [known])
-        self.push = Push(int(decision.action[0]), *decision.shares[0].tolist())
+        self._wish = wish = self._wished(flight, nearest(stick, known), known) if by_hand else stick
+        seen, around = seen_by(alone.network, flight)
+        asked, shares = np.array([wish.action]), np.array([wish.shares])
+        self._decision = decision = copilot.decide(seen, asked, around, shares, flight.env, [known])
+        self.push = Push.of(*decision.shares[0].tolist())
         self.decisions += 1
         missing = held and bool(decision.overridden[0]) and wish not in known
         self.saves, self.late = bool(decision.overridden[0]) and not missing, self.late + missing
-        self._note(known)
-        if by is StickHolder.HUMAN:
-            flight.aim(decision.likely[0])
-        self._ask((self.push,), stick)
+        self._note(flight, known)
+        likely: Doubles | None = decision.likely[0] if by_hand else None
+        self._ask(flight, (self.push,), stick, likely)
+        return likely
 
-    def _note(self, known: Mapping[Push, Future]) -> None:
+    def _note(self, flight: Flight[Any], known: Mapping[Push, Future]) -> None:
         """Note since when no plan is held, and why."""
         if self.safe:
             self.bare = None
             return
-        since, why = self.bare or (self._seconds, "looking")
-        if why == "looking" and self._seconds - since < _SOON and all(key in known for key in KEYS):
-            left = float(np.max(self._flight.env.limits.time)) - self._seconds
+        seconds = _seconds(flight)
+        since, why = self.bare or (seconds, "looking")
+        if why == "looking" and seconds - since < _SOON and all(key in known for key in KEYS):
+            left = float(np.max(flight.env.limits.time)) - seconds
             why = "none" if left > _SHORT else "time"
         self.bare = since, why
 
-    @property
-    def _seconds(self) -> float:
-        return float(self._flight.env.time[0])
-
-    def _wished(self, wish: Push, known: Mapping[Push, Future]) -> Push:
+    def _wished(self, flight: Flight[Any], wish: Push, known: Mapping[Push, Future]) -> Push:
         """Return what is asked for in this decision.
 
         A new wish of which is not known yet what comes of it waits for one decision, in which the one before counts: so
         a key is felt a little later at times.
         """
-        flight, waited = self._flight, self.waits
-        assert flight.copilot is not None
-        self.waits = False
+        waited, self.waits = self.waits, False
         if self.safe and not waited:
-            guardian, here = flight.copilot.guardians[0], Here.of(flight.env)
+            guardian, here = self._copilot.guardians[0], Here.of(flight.env)
             self.waits = guardian.knows(here, self._wish, known) and not guardian.knows(here, wish, known)
         self.waited += self.waits
         if not self.waits:
             self._taps.forget()
         return self._wish if self.waits else wish
 
-    def _ask(self, before: Opening, wish: Push) -> None:
-        flight = self._flight
-        self._moment, self._flown_by = self._here + DECISION_STEPS * len(before), self._flyer
-        self.ahead.ask(Moment.of(flight.env), before, wish, *self._flyer)
+    def _ask(self, flight: Flight[Any], before: Opening, wish: Push, likely: Doubles | None = None) -> None:
+        self._moment, self._flown_by = _here(flight) + DECISION_STEPS * len(before), self._flyer(flight)
+        moment = Moment.of(flight.env)
+        if likely is not None:
+            moment.target[:] = flight.target_of(likely)
+        self.ahead.ask(moment, before, wish, *self._flyer(flight))
 
     @property
-    def _flyer(self) -> tuple[int, Policy, Route | None]:
-        flight = self._flight
-        assert flight.copilot is not None
-        assert flight.network is not None
-        return decisions_of(flight.copilot.assist), flight.network, flight.route
+    def _copilot(self) -> CoPilot:
+        assert self._crew.copilot is not None
+        return self._crew.copilot
 
-    @property
-    def _here(self) -> int:
-        """The steps flown, which tell one moment of the flight from another."""
-        return int(self._flight.env.steps[0])
+    def _flyer(self, flight: Flight[Any]) -> tuple[int, Policy, Route | None]:
+        assert self._crew.network is not None
+        return decisions_of(self._copilot.assist), self._crew.network, flight.route
+
+
+def _begins(flight: Flight[Any]) -> bool:
+    """Whether a decision is due."""
+    return flight.at % DECISION_STEPS == 0
+
+
+def _here(flight: Flight[Any]) -> int:
+    """Return the steps flown, which tell one moment of the flight from another."""
+    return int(flight.env.steps[0])
+
+
+def _seconds(flight: Flight[Any]) -> float:
+    return float(flight.env.time[0])
 
 
 def nearest(wish: Push, known: Mapping[Push, Future]) -> Push:

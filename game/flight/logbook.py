@@ -29,7 +29,7 @@ _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 
 SLACK: Final = 25  # surplus files before they are cleared
 
 
-def describe(flight: Flight, when: float, **more: Any) -> Entry:
+def describe(flight: Flight[Any], when: float, **more: Any) -> Entry:
     """Return the logbook's line for a flight that has ended; `more` are the fields that the flight does not know."""
     env = flight.env
     more["network"] = brief(more.get("network", ""), flight_file.LONGEST_NAME)  # a folder's name, and maybe words on it
@@ -62,7 +62,7 @@ class Records:
         self.logbook = user_dir / LOGBOOK
         self.problem = ""
 
-    def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
+    def keep(self, flight: Flight[Any], when: float, **more: Any) -> Entry:
         """Record a flight that has ended; return its line of the logbook, even if it could not be written.
 
         `more` are fields of Entry: alone, network, course, medal.

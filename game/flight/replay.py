@@ -7,43 +7,19 @@ from typing import Final
 import numpy as np
 
 from ai.environment import Doubles
-from ai.flights.recording import Shares
 from ai.flights.verification import Earned, earned
 from ai.lander.missions import STARTS
-from ai.lander.pilots import COAST
-from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder, start_of
+from game.flight.choosers import Recorded
+from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Record
 
 _EVERY: Final = 20  # steps between the snapshots from which `go_to` starts
 _EXACT: Final = 1e-6  # tolerance of the end pose in metres and radians, for rounding on other processors
 
 
-class ReplayedFlight(Flight):
-    """Flight that repeats recorded actions and ignores the keys; it stops at the end of the flight or recording."""
-
-    def __init__(self, source: Recording) -> None:
-        super().__init__(source.seed, **start_of(source))
-        self._source = source
-
-    @property
-    def at(self) -> int:
-        """Steps flown."""
-        return len(self.recording.actions)
-
-    @property
-    def flown_by(self) -> StickHolder:
-        """Who chose the action of the last step; before the first step, that of the first."""
-        hands = self._source.hands
-        return hands[min(max(self.at - 1, 0), len(hands) - 1)] if hands else self.hand
-
-    def _choose(self, held: int, shares: Shares | None) -> tuple[int, StickHolder, Shares | None]:  # noqa: ARG002
-        """Return the recorded action of the next step, who chose it, and its recorded shares of thrust."""
-        if self.at >= len(self._source.actions):
-            return COAST, self.flown_by, None
-        self.hand = self._source.hands[self.at]
-        if self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0:
-            self.aim()  # as the read-outs then were
-        return self._source.actions[self.at], self.hand, self._source.shares.get(self.at)
+def replayed(source: Recording) -> Flight[Recorded]:
+    """Begin a flight that repeats a recorded one."""
+    return Flight(source, Recorded(source))
 
 
 class FlightReplay:
@@ -58,8 +34,8 @@ class FlightReplay:
 
     def __init__(self, record: Record) -> None:
         self.record = record
-        self.length = len(record.recording.actions)
-        self.flight, self._scout = ReplayedFlight(record.recording), ReplayedFlight(record.recording)
+        self.length = len(record.recording.pushes)
+        self.flight, self._scout = replayed(record.recording), replayed(record.recording)
         self._moments = [self._scout.env.snapshot()]
         self._places = np.empty((self.length + 1, 2))
         self._places[0] = self._scout.env.position[0]
@@ -108,7 +84,7 @@ class FlightReplay:
         for _ in range(steps):
             if self.complete:
                 return
-            self._scout.step(COAST)
+            self._scout.step()
             self._places[self.reached] = self._scout.env.position[0]
             if self.reached % _EVERY == 0:
                 self._moments.append(self._scout.env.snapshot())
@@ -118,7 +94,7 @@ class FlightReplay:
         if self.at >= self.reached:
             self.scout(1)
         if self.at < self.reached:
-            self.flight.step(COAST)
+            self.flight.step()
         else:
             self.flight.rest()
 
@@ -129,7 +105,7 @@ class FlightReplay:
         if not mark * _EVERY <= self.at <= step:
             self.flight.put(self._moments[mark], self.record.recording, mark * _EVERY)
         while self.at < step:
-            self.flight.step(COAST)
+            self.flight.step()
         self.flight.rest()
 
 

@@ -38,7 +38,7 @@ def code(record: Record) -> str:
 def record_of(flight: SharedFlight, when: float) -> Record:
     """Return the record of a shared flight as it is claimed."""
     recording, claim = flight.recording, flight.claim
-    seconds = len(recording.actions) * DT
+    seconds = len(recording.pushes) * DT
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
     entry = Entry(
         when, claim.outcome.name, seconds, 0.0, 0.0, round(by_hand, 4), pads=recording.pads, score=claim.points,

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final, NamedTuple
+from typing import Final
 
 import pygame
 
-from ai.flights.recording import STEPS, Shares, full
-from ai.lander.rules import nearest_action
+from ai.lander.push import STEPS, Push
 from game.input.bindings import TRIGGERS, Bindings, Command, Held
 
 # Axis, direction, how far out of 32767 it must be pushed.
@@ -41,31 +40,15 @@ _TURN: Final = pygame.CONTROLLER_AXIS_LEFTX
 _RISE: Final = pygame.CONTROLLER_AXIS_RIGHTY
 
 
-class Stick(NamedTuple):
-    """Position of the stick in one step.
-
-    Attributes:
-        action: the action asked for, 0 to 5.
-        shares: its shares of thrust; None if all of it.
-
-    """
-
-    action: int = 0
-    shares: Shares | None = None
-
-
-def pushed(main: float, side: float, before: Shares | None = None) -> Stick:
-    """Return the stick at shares of thrust, `main` 0 to 1 and `side` -1, left, to 1, right, rounded to a step.
+def pushed(main: float, side: float, before: Push) -> Push:
+    """Return the push of shares of thrust, `main` 0 to 1 and `side` -1, left, to 1, right, rounded to a step.
 
     A share that is hardly another than `before` stays as it was, because hands tremble.
     """
-    last_main, last_side = before or (None, None)
-    shares = _rounded(min(max(main, 0.0), 1.0), last_main), _rounded(min(max(side, -1.0), 1.0), last_side)
-    action = nearest_action(shares[0] / STEPS, shares[1] / STEPS)
-    return Stick(action, None if shares == full(action) else shares)
+    return Push(_rounded(min(max(main, 0.0), 1.0), before.main), _rounded(min(max(side, -1.0), 1.0), before.side))
 
 
-def _rounded(share: float, before: int | None) -> int:
+def _rounded(share: float, before: float) -> float:
     nearest = round(STEPS * share)
     if not before or nearest in _ENDS or abs(STEPS * share - before) > _TREMBLE:
         return nearest

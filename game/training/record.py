@@ -103,7 +103,7 @@ def put_beside(runs: list[EarlierRun], name: str, run: History) -> None:
 
     One that has no curve yet, as no flight has ended, is left out.
     """
-    if not np.isfinite(run["success" if "success" in run.columns else "loss"]).any():
+    if not np.isfinite(run["success_rate" if "success_rate" in run.columns else "loss"]).any():
         return
     run.checkpoints.clear()  # only its curves are shown, and there may be many such runs
     runs[:] = [each for each in runs if each.name != name]

@@ -8,7 +8,6 @@ from functools import partial
 
 import pygame
 
-from game.core import texts
 from game.core.scene import Transition
 from game.input.controls import Command, Controls, code_of, translate
 from game.ui.hints import Hint
@@ -76,16 +75,3 @@ def digit_actions(run: Callable[[int], Transition | None]) -> Iterable[Action]:
     """Return an action for the keys of each digit, on the keypad too."""
     keys = [(key, digit) for digit in range(10) for key in (pygame.K_0 + digit, pygame.K_KP1 + (digit - 1) % 10)]
     return [Action(key, partial(run, digit)) for key, digit in keys]
-
-
-def one_of_ten(
-    controls: Controls, choose: Callable[[int], Transition | None], chosen: Callable[[], int]
-) -> Iterable[Action | Hint]:
-    """Return what chooses one of ten digits: its key, or the next or previous one; `chosen` is the present one."""
-    by_gamepad = f"{controls.word(Command.PREVIOUS)} {controls.word(Command.NEXT)}"
-    return [
-        Hint(by_gamepad if controls.gamepad_in_use else "0 – 9", texts.HINT_DIGIT),
-        *digit_actions(choose),
-        Action(Command.NEXT, lambda: choose((chosen() + 1) % 10)),
-        Action(Command.PREVIOUS, lambda: choose((chosen() - 1) % 10)),
-    ]

@@ -28,10 +28,12 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
+F = TypeVar("F", bound=ButtonRow | ChoiceRow)
 P = ParamSpec("P")
 Write = Callable[[Cursor], object]
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
 _WORDS: Final = 28.0  # points between two words side by side
+_LOW: Final = 5.0  # points above and below words side by side
 _WHEEL: Final = 48.0  # points for one notch of the mouse's wheel
 
 
@@ -136,10 +138,16 @@ class Column:
 
     def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        buttons = [self._form.add(ButtonRow(label, press, size=size)) for label, press in words]
-        self._widgets += buttons
-        self.add(partial(_write_words, buttons))
-        return buttons
+        return self.flow([ButtonRow(label, press, size=size) for label, press in words])
+
+    def flow(self, widgets: Sequence[F]) -> list[F]:
+        """Add widgets side by side, each as wide as its words, on as many lines as they need."""
+        added = [self._form.add(widget) for widget in widgets]
+        for widget in added:
+            widget.pad = _LOW
+        self._widgets += added
+        self.add(partial(_write_words, added))
+        return added
 
     # Columns
 
@@ -239,13 +247,15 @@ class Panel(Column):
         canvas.pill((right, top, 3, self.box.height * share), MUTE)
 
 
-def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
+def _write_words(widgets: Sequence[ButtonRow | ChoiceRow], cursor: Cursor) -> None:
     left, below = cursor.left, cursor.y
-    for button in buttons:
-        width = min(button.measured(cursor), cursor.width)
+    for widget in widgets:
+        width = min(widget.measured(cursor), cursor.width)
         if left > cursor.left and left + width > cursor.right:
             left, cursor.y = cursor.left, below
         place = cursor.column(left, width)
-        button.lay(place)
+        widget.lay(place)
+        if cursor.canvas and widget.what:
+            cursor.canvas.explain(widget.box, widget.what)
         left, below = left + width + _WORDS, max(below, place.y)
     cursor.y = below

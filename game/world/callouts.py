@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pygame
@@ -124,7 +124,7 @@ class PadFactors:
 
     """
 
-    def __init__(self, flight: Flight) -> None:
+    def __init__(self, flight: Flight[Any]) -> None:
         self._flight = flight
         pads = flight.env.ground.pads
         self._pads = pads if sum(pad.factor > 0 for pad in pads) > 1 else ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pygame
@@ -153,7 +153,7 @@ class PathPreview:
 
     """
 
-    def __init__(self, flight: Flight, network: Policy | None) -> None:
+    def __init__(self, flight: Flight[Any], network: Policy | None) -> None:
         self._flight = flight
         self.drift = Drift(flight.env)
         self._drifts = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -40,7 +40,7 @@ class Scenery:
 
     """
 
-    def __init__(self, flight: Flight, reduced_motion: bool, clear: ClearArea = framing.ALL) -> None:
+    def __init__(self, flight: Flight[Any], reduced_motion: bool, clear: ClearArea = framing.ALL) -> None:
         self._flight, self.calm, self.clear = flight, reduced_motion, clear
         self._look = look_of(flight.recording.mission)
         chance = np.random.default_rng(flight.recording.seed)

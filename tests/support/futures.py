@@ -1,6 +1,7 @@
 """Futures for guarded flights, without a process of their own."""
 
-from ai.copilot.futures import KEYS, Lookahead, Push
+from ai.copilot.futures import Lookahead
+from ai.lander.push import KEYS, Push
 
 
 class AtOnce:

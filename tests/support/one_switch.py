@@ -3,6 +3,8 @@
 from collections import deque
 
 from ai.lander.environment import OBSERVATION_SCALE
+from ai.lander.push import KEYS
+from game.flight.choosers import steered
 from game.flight.flight import Flight
 
 EVERY = LATE = 12  # steps
@@ -31,7 +33,7 @@ class SlowSwitch:
 
 def one_switch(flight: Flight) -> Flight:
     """Fly to the end with one switch."""
-    flight.steered, hand = True, SlowSwitch()
+    hand = SlowSwitch()
     while not flight.over:
-        flight.step(3 * hand.held(flight))
+        flight.step(steered(KEYS[3 * hand.held(flight)], flight.observation))
     return flight

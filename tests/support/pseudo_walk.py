@@ -150,17 +150,16 @@ def noted(driver: Driver) -> None:
 
 
 def tried(*labels: str, steps: int) -> Happens:
-    """Return what tries a chapter: presses on widgets, each for so many steps; then it is asked why."""
+    """Return what tries a chapter: presses on widgets, each for so many steps."""
 
     def try_it(driver: Driver) -> None:
         scene = driver.top
         assert isinstance(scene, ChapterScene)
-        scene.turn_to(1)
+        scene.begin()
         for label in labels or ("",):
             if label:
                 driver.press_on(label)
             driver.skip(steps)
-        scene.turn_to(2)
         driver.frames(2)
 
     return try_it
@@ -214,9 +213,9 @@ STATES = [
     Stop("PhysicsScene", "a law", measured),
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
-    *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
-    Stop("modern inside", "inside", partial(inside, 3)),
-    Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
+    Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),
+    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
+    Stop("modern inside", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
         for key, labels, steps in (

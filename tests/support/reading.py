@@ -111,17 +111,17 @@ class Reading:
             if page.shares:  # the card is there
                 assert page.flew == {flew(flight.recording.hands)}, page.words
         else:
-            shared = flight.copilot is not None and flight.copilot.assist > 0
-            truth = "network" if flight.hand is StickHolder.NETWORK else "both" if shared else "person"
+            shared = flight.chooser.copilot is not None and flight.chooser.copilot.assist > 0
+            truth = "network" if flight.chooser.hand is StickHolder.NETWORK else "both" if shared else "person"
             assert page.who <= {truth}, page.words  # or what is more urgent is said, or the craft waits
             assert not page.flew
             if truth == "person":
                 assert not any("assist" in word or "guards" in word for word in page.words), page.words
         for share in page.shares:
             assert abs(abs(share) / 100 - (flight.share if share > 0 else 1 - flight.share)) <= 0.01
-        hint = texts.HINT_TAKE_BACK if flight.hand is StickHolder.NETWORK else texts.HINT_HAND_OVER
+        hint = texts.HINT_TAKE_BACK if flight.chooser.hand is StickHolder.NETWORK else texts.HINT_HAND_OVER
         shown = {texts.HINT_TAKE_BACK, texts.HINT_HAND_OVER} & set(page.words)
-        assert shown <= ({hint} if flight.network and not flight.over else set()), page.words
+        assert shown <= ({hint} if flight.chooser.network and not flight.over else set()), page.words
         return page
 
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ai.training.config import PRESETS, Config
-from ai.training.history import Checkpoint, History, Point, SettingChange
+from ai.training.history import Checkpoint, History, SettingChange
+from tests.support.points import point as moment
 
 _RECORDED = PRESETS["modern"].changed(  # before modern learned as it does now
     learning_rate=2e-3, schedule_decisions=600_000, n_step=10, batch_size=256, gradient_steps=12, activation="relu",
@@ -66,10 +67,10 @@ def growing(name: str) -> Iterator[Recorded]:
             history.append(SettingChange(at, knob, attrgetter(knob)(config), attrgetter(knob)(turned)))
             config = turned
         if point["decisions"] >= checkpoint_at:
-            at, success = (int(point["decisions"]), point["success"]) if checkpoint_at else (0, 0.0)
+            at, success = (int(point["decisions"]), point["success_rate"]) if checkpoint_at else (0, 0.0)
             history.append(Checkpoint(point["seconds"], at, success, np.zeros(3, np.float32)))
             checkpoint_at = max(point["decisions"] + 10_240, 2_500.0) if checkpoint_at else 2_500.0
-        history.append(Point(**point))
+        history.append(moment(**point))
         yield Recorded(history, config)
 
 

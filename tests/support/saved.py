@@ -14,10 +14,11 @@ import numpy as np
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
+from ai.lander.push import KEYS
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
 from ai.training.config import PRESETS
-from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
+from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Training
 from ai.training.run import resume, save
 from game.core.settings import Settings, SettingsFile
@@ -26,6 +27,7 @@ from game.flight.flight import Recording, StickHolder
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records
 from game.training.library import Library
+from tests.support.points import point
 
 Data = tuple[Any, Any]
 
@@ -74,7 +76,7 @@ def _training(version: int) -> Training:
 def _run(folder: Path, version: int) -> None:
     training, history = _training(version), History()
     training.best = training.task.evaluate(training.agent, 1, 0)
-    history.append(Point(*[float(version)] * 9))
+    history.append(point(seconds=float(version), decisions=float(version)))
     history.append(Checkpoint(0.0, 0, 0.0, training.agent.network.values.copy(), None))
     history.append(Validation(0, 0.5, 1.0, best=True))
     history.append(SettingChange(0, "discount", 0.9, 0.99))
@@ -122,7 +124,7 @@ def _read_settings(folder: Path) -> Any:
 
 
 def _flight(folder: Path, version: int) -> None:
-    recording = Recording(version, "random", actions=[0, 3, 3, 1], hands=[StickHolder.HUMAN] * 4)
+    recording = Recording(version, "random", pushes=list(KEYS), hands=[StickHolder.HUMAN] * len(KEYS))
     entry = Entry(1e9, "CRASHED", 1.0, 0.5, 3.0, 1.0, network="modern", file=f"{version}.json")
     with suppress(FileExistsError):
         flight_file.write(folder / "flights" / entry.file, Record(recording, entry, (0.0, 1.0, 0.0)))

@@ -16,10 +16,8 @@ from game.core.scene import Push, Scene
 from game.flight import sharing
 from game.flight.days import Days
 from game.flight.flight_file import Record
-from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.scene import DigitsScene
-from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.learn.list import LearnScene
 from game.scenes.learn.one_file import OneFileScene
 from game.scenes.learn.path import FIRST, PATH
@@ -27,7 +25,7 @@ from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
-from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
+from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import FlightsScene, MenuScene
 from game.scenes.menus.settings import SettingsScene
@@ -71,8 +69,6 @@ SCREENS: dict[str, Make] = {
     "DigitsScene": DigitsScene,
     "DigitTrainingScene": DigitTrainingScene,
     "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
-    "WhyNotScene": lambda context: WhyNotScene(context, reader(), seven()),
-    "DreamScene": lambda context: DreamScene(context, reader()),
     "PhysicsScene": PhysicsScene,
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
     "LearnScene": LearnScene,
@@ -100,6 +96,8 @@ FLOWN: dict[str, Make] = {
     "friend": friend,
     "daily": daily,
     "Play": lambda context: PlayScene(context, 3),
+    "inside, sums": lambda context: inside(context, "sums"),
+    "inside, dreams": lambda context: inside(context, "dreams"),
     "swarm": lambda context: WatchScene(context, seed=2, many=True),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
     "tutorial": lambda context: PlayScene(context, 0, challenge=Tutorial()),
@@ -112,7 +110,6 @@ OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "ChoicesScene": lambda below: ChoicesScene(below.context, below, begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
-    "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),
 }
 
 
@@ -132,6 +129,13 @@ def fallen(steps: int = 100) -> Exhibit:
 def seven() -> Image:
     """A seven as networks read it."""
     return preprocess_strokes([np.array([(0.2, 0.2), (0.8, 0.2), (0.4, 0.9)]) * 500])
+
+
+def inside(context: Context, tab: str) -> DigitInsideScene:
+    """Another tab of Look inside than the first."""
+    scene = DigitInsideScene(context, reader(), seven())
+    scene.choose(getattr(scene, tab))
+    return scene
 
 
 def flown(context: Context) -> Record:

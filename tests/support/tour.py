@@ -16,6 +16,7 @@ from game.flight.days import Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.ui.context import Context
+from tests.support.flights import begun
 
 FLIGHTS = 2
 
@@ -48,8 +49,8 @@ def stock(context: Context) -> None:
 @cache
 def flown(seed: int) -> Flight:
     """The scripted pilot's flight, flown once: nobody changes it."""
-    flight = Flight(seed, ScriptedPilot())
-    flight.hand_over()
+    flight = begun(seed, ScriptedPilot())
+    flight.chooser.hand_over()
     while not flight.over:
-        flight.step(0)
+        flight.step()
     return flight

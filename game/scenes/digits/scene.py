@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
 
 from ai.digits.preprocessing import Image
 from game.core import texts
-from game.core.scene import Push, Transition, push
+from game.core.scene import Transition, push
 from game.digits import certainty
-from game.digits.pictures import AMBER, Numbers, picture
+from game.digits.pictures import AMBER, Numbers, framed, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
@@ -23,17 +22,15 @@ from game.scenes.digits.answer import DigitBars, write_answer, write_legend
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.pad import DrawingPad, pen_row
 from game.scenes.digits.reader import LiveReading, Reading, Verdict, best_two
-from game.training.digit_models import NAMES, called
+from game.training.library import NAMES, called
 from game.ui.actions import Action, Table, digit_actions
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 
-if TYPE_CHECKING:
-    from ai.digits.classifier import DigitClassifier
-
-COLUMNS: Final = (48, 60)  # shares of a page: the pad, and what is said of it
-LEAST: Final = 280.0
+_LEAST, _APART = 170.0, 32.0  # points: the narrowest pad that stands beside its answer, and between the two
+_ANSWER: Final = 130.0  # points for the answer beside its reasons
+_MORE: Final = "digits"  # name in the settings of what stays open
 _LONGEST: Final = 16  # letters of a network's name
 _WHY: Final = 300.0  # side of a picture
 _TILE: Final = 52.0
@@ -46,13 +43,12 @@ class DigitsScene(PanelScene):
         pad: the drawing pad.
         live: reads and explains the drawing.
         fixing: teaches a network a drawing that it misreads.
-        prepared: whether it is shown how a drawing is prepared for the networks.
 
     """
 
     def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
         super().__init__(context)
-        self.pad, self.prepared = DrawingPad(), False
+        self.pad = DrawingPad()
         self.live = LiveReading(self.pad, chosen, self._show_bars)
         self._bars = DigitBars(self._correct)
         self._why, self._stages = PaintCache(), PaintCache()
@@ -103,12 +99,9 @@ class DigitsScene(PanelScene):
 
     def actions(self) -> Table:
         return [
-            Action(Command.NEXT, lambda: self._turn(1), texts.DIGITS_HINT_NETWORK),
-            Action(Command.PREVIOUS, lambda: self._turn(-1)),
             self.form.goes_back(texts.HINT_BACK),
             Action(pygame.K_z, self.pad.undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
-            Action(Command.CHOICES, self.pad.clear, texts.DIGITS_CLEAR.lower()),
-            *(Action(key, self.pad.clear) for key in (Command.RETRY, pygame.K_DELETE)),
+            *(Action(key, self.pad.clear) for key in (Command.CHOICES, Command.RETRY, pygame.K_DELETE)),
             *digit_actions(self._correct),
         ]
 
@@ -126,52 +119,49 @@ class DigitsScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
+        left, right = panel.beside((48, 60), least=_LEAST, apart=_APART)
         left.text(texts.DIGITS_TITLE, size=TITLE)
-        left.gap()
         self._pen = left.widget(pen_row(self.pad))
         left.words([
-            (texts.DIGITS_UNDO, self.pad.undo),
             (texts.DIGITS_CLEAR, self.pad.clear),
+            (texts.INSIDE_TITLE, self._look_inside),
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
-            (texts.DIGITS_DREAM, self._dream),
+            (texts.MORE[self._more], self._open_more),
         ])  # fmt: skip
-        answer, why = right.beside((22, 33), least=160.0)
-        self._describe_answer(answer)
-        self._describe_why(why)
-
-    def _describe_answer(self, column: Column) -> None:
-        names = [name for name in self.fixing.networks if name in (*NAMES, self.chosen)]
-        words = [word if len(word) <= _LONGEST else word[:_LONGEST] + "…" for word in map(called, names)]
-        column.choice("", words, names.index(self.chosen) if self.chosen in names else 0,
-                      lambda index: self._choose(names[index]))  # fmt: skip
-        if len(self.fixing.networks) > len(NAMES):
-            column.button(texts.DIGITS_ALL.format(count=len(self.fixing.networks)), self._pick, size=SMALL)
-        column.add(self._write_answer)
-        column.words([
-            (texts.WHY_NOT_WORD, partial(self._ask, "why_not")),
-            (texts.PATCH_WORD, partial(self._ask, "digit_inside")),
-        ])  # fmt: skip
+        answer, why = right.beside((22, 33), least=_ANSWER)
+        answer.add(self._write_answer)
         shown = self._bars.shown
-        self._bars = column.widget(DigitBars(self._correct))
+        self._bars = answer.widget(DigitBars(self._correct))
         self._bars.shown = shown
         self._show_bars()
-        column.add(self._write_fix)
+        answer.add(self._write_fix)
         if self.chosen in self.fixing.networks and self.fixing.count(self.chosen):
-            column.button(texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL)
+            answer.button(texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL)
+        why.add(self._write_why)
+        if self._more:
+            self._describe_more(why)
 
-    def _describe_why(self, column: Column) -> None:
-        column.add(self._write_why)
-        column.toggle(texts.DIGITS_SEES, self.prepared, self._show_prepared)
-        if self.prepared:
-            column.picture(_TILE, self._draw_stages)
+    def _describe_more(self, column: Column) -> None:
+        reader = self.live.reader
+        names = [name for name in self.fixing.networks if name in reader.classifiers or name not in reader.problems]
+        words = [word if len(word) <= _LONGEST else word[:_LONGEST] + "…" for word in map(called, names)]
+        index = names.index(self.chosen) if self.chosen in names else 0
+        column.choice(texts.DIGITS_READER, words, index, lambda index: self._choose(names[index]))
+        column.gap()
+        column.caption(texts.DIGITS_SEES)
+        column.picture(_TILE, self._draw_stages)
+
+    @property
+    def _more(self) -> bool:
+        return self.context.settings.is_open(_MORE)
+
+    def _open_more(self) -> None:
+        self.context.settings.unfold(_MORE)
+        self.context.apply_settings()
+        self.build()
 
     def _show_bars(self) -> None:
         self._bars.values, self._bars.best = self.live.bars()
-
-    def _show_prepared(self, shown: bool) -> None:
-        self.prepared = shown
-        self.build()
 
     def _write_answer(self, cursor: Cursor) -> None:
         if self.chosen in self.reading.probabilities:
@@ -180,25 +170,28 @@ class DigitsScene(PanelScene):
             cursor.styled(texts.DIGITS_PROBLEM.format(name=called(name), problem=problem), SMALL, cursor.palette.warn)
 
     def _write_fix(self, cursor: Cursor) -> None:
-        if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
+        if self._drawn:
             first, second = fix_lines(self.fixing, same=self._fix_of == self.pad.revision)
             cursor.styled(first, SMALL, HUMAN)
             cursor.aside(second)
 
     def _write_why(self, cursor: Cursor) -> None:
-        why, drawn = self.live.why, self.reading.verdict(self.chosen) is not Verdict.EMPTY
-        words = texts.DIGITS_WHY_EMPTY
-        if drawn:
+        why, legend = self.live.why, texts.DIGITS_WHY_LEGEND if self._drawn else ()
+        words = ""
+        if self._drawn:
             first, second = best_two(self.reading.probabilities[self.chosen])
             words = texts.DIGITS_WHY.format(digit=first, other=second)
         cursor.caption(words)
         size = min(cursor.width, _WHY)
         box = cursor.take(size)
-        if cursor.canvas and why is not None:
-            self._why.draw(cursor.canvas, (box.left, box.top, size, size), why.tobytes(), partial(_paint, why))
-        write_legend(
-            cursor, zip(texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), strict=True) if drawn and why is not None else ()
-        )
+        if self._drawn and cursor.canvas and why is not None:
+            self._why.draw(cursor.canvas, (box.left, box.top, size, size), why.tobytes(), framed(why, AMBER))
+        write_legend(cursor, zip(legend, (HUMAN, MUTE), strict=False))
+
+    @property
+    def _drawn(self) -> bool:
+        """Whether there is something that the chosen network reads."""
+        return self.reading.verdict(self.chosen) is not Verdict.EMPTY
 
     def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
         reading, tile = self.reading, min(_TILE, box.width / 6)
@@ -224,28 +217,6 @@ class DigitsScene(PanelScene):
             self.live.chosen = name
         self._take_anew()
 
-    def _turn(self, direction: int) -> None:
-        """Choose the next network that can be loaded."""
-        names = list(self.fixing.networks)
-        at = names.index(self.chosen) if self.chosen in names else 0
-        for distance in range(1, len(names)):
-            self._choose(name := names[(at + direction * distance) % len(names)])
-            if self.chosen == name:
-                return
-
-    def _pick(self) -> Transition:
-        """Open a list of all networks with their accuracy."""
-        from game.scenes.menus.dialogs import ListDialog
-
-        damaged, names = self.live.reader.problems, list(self.fixing.networks)
-        rows = [
-            (called(name), texts.DIGIT_MODEL_DAMAGED if name in damaged else network.said)
-            for name, network in self.fixing.networks.items()
-        ]
-        return Push(ListDialog(self, texts.DIGITS_PICK, rows, lambda index: self._choose(names[index])))
-
-    # Fixing a wrong answer
-
     def _correct(self, digit: int) -> None:
         """Teach the chosen network that what is drawn is this digit."""
         self.live.catch_up()
@@ -259,25 +230,12 @@ class DigitsScene(PanelScene):
             self._load(self.chosen)
             self._take_anew()
 
-    # Other screens
-
-    def _dream(self) -> Transition | None:
-        """Open the dream scene with the drawing."""
-        seen = self.probabilities
-        digit = 0 if seen is None else int(seen.argmax())
-        return self._with_chosen(lambda classifier: push("dream", classifier, digit, self.reading.stages.centred))
-
-    def _ask(self, route: str) -> Transition | None:
-        """Open a scene about what the chosen network makes of the drawing."""
+    def _look_inside(self) -> Transition | None:
+        """Show what the chosen network makes of the drawing."""
         if self.probabilities is None:
             self.context.note(texts.DIGITS_EMPTY)
             return None
-        return self._with_chosen(lambda classifier: push(route, classifier, self.reading.stages.centred))
-
-    def _with_chosen(self, lead: Callable[[DigitClassifier], Transition]) -> Transition | None:
-        """Open a scene about the chosen network, if it could be loaded."""
-        classifier = self.live.reader.classifiers.get(self.chosen)
-        return lead(classifier) if classifier else None
+        return push("digit_inside", self.live.reader.classifiers[self.chosen], self.reading.stages.centred)
 
 
 def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
@@ -295,10 +253,6 @@ def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
     before, now = map(certainty, fixed.probability)
     first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
     return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
-
-
-def _paint(why: Image, sheet: Canvas) -> None:
-    sheet.surface.blit(picture(why, sheet.surface.get_size(), AMBER), (0, 0))
 
 
 def _paint_stages(sheet: Canvas, reading: Reading, tile: float) -> None:

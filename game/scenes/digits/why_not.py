@@ -1,38 +1,38 @@
-"""Why-not scene: why a digit is not read as another one, and the ink that would have to go or to come for it."""
+"""Why not another digit: which ink is in its way, and which it lacks, measured spot by spot."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
+from ai.digits.classifier import DIGITS
 from ai.digits.preprocessing import SIDE, Image
 from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
-from game.core.scene import Replace, Route, Transition
 from game.digits import certainty
 from game.digits.pictures import SIGNED, Numbers, framed, visible
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import MUTE, NET, SMALL
 from game.input.controls import Command
-from game.scenes.digits.answer import DigitBars, write_large, write_legend
-from game.scenes.digits.pad import side_in
+from game.scenes.digits.answer import DigitBars, write_legend
 from game.scenes.digits.reader import best_two
-from game.scenes.digits.scene import COLUMNS, LEAST
 from game.scenes.digits.sums import figure
-from game.ui.actions import Action, Table, one_of_ten
-from game.ui.context import Context
-from game.ui.panel import Column, Panel
-from game.ui.panel_scene import PanelScene
+from game.ui.actions import Action, digit_actions
+from game.ui.hints import Hint
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
+    from game.ui.actions import Table
+    from game.ui.context import Context
+    from game.ui.panel import Panel
 
-_MAP: Final = 150.0
+_DIGIT, _MAP = 400.0, 240.0  # sides of pictures
 _EVERY: Final = 8  # updates from one picture of what is being measured to the next
 _INDENT: Final = 16.0
 
@@ -45,7 +45,7 @@ class Shown:
         asked, answer: the two digits.
         ink: rows and columns of the digit's ink, first and last of each.
         take, put: the ink to take away and to put that brings the asked digit nearest; None if none does.
-        there, missing: (28, 28) in -1 to 1, of ink that is there and that is not, what it says for the asked digit.
+        says: (28, 28) in -1 to 1, what the ink there, or ink where there is none, says for the asked digit.
         measured: whether all has been measured.
 
     """
@@ -55,12 +55,11 @@ class Shown:
     ink: tuple[tuple[int, int], tuple[int, int]]
     take: InkChange | None
     put: InkChange | None
-    there: Numbers
-    missing: Numbers
+    says: Numbers
     measured: bool
 
 
-class WhyNotScene(PanelScene):
+class WhyNotTab:
     """A digit (28, 28), the network's answer, and the question why it is not another.
 
     Attributes:
@@ -71,36 +70,37 @@ class WhyNotScene(PanelScene):
 
     """
 
-    def __init__(self, context: Context, classifier: DigitClassifier, image: Image) -> None:
-        super().__init__(context)
-        self._classifier, self._first = classifier, np.asarray(image, np.float32)
-        self._painted, self._maps = PaintCache(), (PaintCache(), PaintCache())
+    def __init__(self, context: Context, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
+        self._context, self._classifier, self._first, self._build = context, classifier, image, build
+        self._painted, self._map = PaintCache(), PaintCache()
         self._steps = 0
-        self.asked = best_two(classifier.predict(self._first)[0])[1]
+        self.asked = best_two(classifier.predict(image)[0])[1]
         self._bars = DigitBars(self.ask)
-        self._set_image(self._first)
-        self.form.focus(self._bars)
+        self._set_image(image)
 
     def ask(self, digit: int) -> None:
         """Ask about another digit."""
         self.asked = digit
         self._show()
-        self.build()
+        self._build()
 
     def actions(self) -> Table:
+        controls = self._context.controls
+        by_gamepad = f"{controls.word(Command.PREVIOUS)} {controls.word(Command.NEXT)}"
         return [
-            *one_of_ten(self.context.controls, self.ask, lambda: self.asked),
-            Action(Command.RETRY, self._restore, texts.WHY_NOT_UNDO.lower()),
-            self.form.goes_back(texts.HINT_BACK),
+            Hint(by_gamepad if controls.gamepad_in_use else "0 – 9", texts.HINT_DIGIT),
+            *digit_actions(self.ask),
+            Action(Command.NEXT, lambda: self.ask((self.asked + 1) % DIGITS)),
+            Action(Command.PREVIOUS, lambda: self.ask((self.asked - 1) % DIGITS)),
+            Action(Command.RETRY, self._restore),
         ]
 
-    def update(self) -> Transition | None:
+    def update(self) -> None:
         if self.contrast and not self.contrast.done:
             self.contrast.advance()
             self._steps += 1
             if self._steps % _EVERY == 0 or self.contrast.done:
                 self._show()
-        return super().update()
 
     # The digit and its evidence
 
@@ -112,7 +112,6 @@ class WhyNotScene(PanelScene):
         except ValueError:
             self.contrast = None
         self._show()
-        self.build()
 
     def _show(self) -> None:
         known = self.contrast is not None and bool(self.image.any())
@@ -124,56 +123,46 @@ class WhyNotScene(PanelScene):
             change = self.seen.put if ink else self.seen.take
             if change:
                 self._set_image(self.contrast.changed(change.row, change.column, ink))
+                self._build()
 
     def _restore(self) -> None:
         if self.image is not self._first:
             self._set_image(self._first)
+            self._build()
 
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
-        left.text(texts.WHY_NOT_TITLE.format(digit=self.asked), size=TITLE)
-        left.aside(texts.WHY_NOT_LINE)
-        left.gap()
-        left.picture(lambda width: min(side_in(width), 440.0), self._draw_image)
+        left, right = panel.beside((44, 60), least=170.0, apart=32.0)
+        answer, evidence = right.beside((22, 33), least=130.0)
+        left.picture(lambda width: min(width, _DIGIT), self._draw_image)
         left.words([
             (texts.WHY_NOT_TAKE_IT, lambda: self._change(0)),
             (texts.WHY_NOT_PUT_IT, lambda: self._change(1)),
             (texts.WHY_NOT_UNDO, self._restore),
         ])  # fmt: skip
-        answer, evidence = right.beside((22, 33), least=160.0)
         answer.add(self._write_answer)
         eased = self._bars.shown
         self._bars = answer.widget(DigitBars(self.ask, self.asked))
         self._bars.shown, self._bars.best = eased, int(self.probabilities.argmax())
         self._bars.values = [(value, 0.0) for value in self.probabilities.tolist()]
-        self._describe_evidence(evidence)
-        evidence.words([(texts.WHY_NOT_INSIDE, lambda: Replace(Route("digit_inside", (self._classifier, self.image))))])
-
-    def _describe_evidence(self, column: Column) -> None:
         if self.seen is None:
-            column.text(texts.WHY_NOT_STRANGE if self.contrast is None else texts.WHY_NOT_EMPTY, colour=MUTE)
+            evidence.text(texts.WHY_NOT_STRANGE if self.contrast is None else texts.WHY_NOT_EMPTY, colour=MUTE)
             return
-        column.add(self._write_sentences)
-        if self.asked == self.seen.answer:
-            return
-        column.gap()
-        for number, (part, words) in enumerate(
-            zip(column.beside((1, 1), least=100.0, apart=20.0), (texts.WHY_NOT_INK, texts.WHY_NOT_ROOM), strict=True)
-        ):
-            part.caption(words)
-            part.picture(lambda width: min(width, _MAP), lambda canvas, box, n=number: self._draw_map(canvas, box, n))  # type: ignore[misc]
-        legend = [each.format(asked=self.asked) for each in texts.WHY_NOT_LEGEND]
-        column.add(lambda cursor: write_legend(cursor, zip(legend, (NET, cursor.palette.warn), strict=True)))
+        evidence.add(self._write_sentences)
+        if self.asked != self.seen.answer:
+            evidence.gap()
+            evidence.picture(lambda width: min(width, _MAP), self._draw_map)
+            legend = [each.format(asked=self.asked) for each in texts.WHY_NOT_LEGEND]
+            evidence.add(lambda cursor: write_legend(cursor, zip(legend, (NET, cursor.palette.warn), strict=True)))
 
     def _write_answer(self, cursor: Cursor) -> None:
         answer = int(self.probabilities.argmax())
-        write_large(cursor, str(answer))
         words = texts.WHY_NOT_READS.format(digit=answer, percent=certainty(float(self.probabilities[answer])))
         if self.contrast:
             words += texts.WHY_NOT_SCORE.format(score=figure(float(self.contrast.scores[answer])))
-        cursor.styled(words, colour=MUTE, tabular=True)
+        cursor.styled(words, tabular=True)
+        cursor.gap()
 
     def _write_sentences(self, cursor: Cursor) -> None:
         assert self.seen
@@ -200,10 +189,9 @@ class WhyNotScene(PanelScene):
                 canvas.outline((left, top, SQUARE * pixel, SQUARE * pixel), 3, colour, 2)
                 canvas.text("+" if change.ink else "−", (left + SQUARE * pixel + 6, top + 14), colour=colour)
 
-    def _draw_map(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
+    def _draw_map(self, canvas: Canvas, box: pygame.FRect) -> None:
         if seen := self.seen:
-            paint = framed((seen.there, seen.missing)[number], SIGNED)
-            self._maps[number].draw(canvas, (*box.topleft, box.height, box.height), seen, paint)
+            self._map.draw(canvas, (*box.topleft, box.height, box.height), seen, framed(seen.says, SIGNED))
 
 
 def shown(contrast: Contrast, asked: int) -> Shown:
@@ -213,8 +201,8 @@ def shown(contrast: Contrast, asked: int) -> Shown:
     scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
     changes = [contrast.best(asked, ink) for ink in (0, 1)]
     take, add = (each if each and figure(each.before) != figure(each.after) else None for each in changes)
-    there, missing = visible(-taken / scale), visible(put / scale)
-    return Shown(asked, contrast.answer, _inked(contrast.image), take, add, there, missing, contrast.done)
+    says = visible(np.where(contrast.image > 0, -taken, put) / scale)
+    return Shown(asked, contrast.answer, _inked(contrast.image), take, add, says, contrast.done)
 
 
 def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:

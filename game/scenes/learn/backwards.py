@@ -97,8 +97,8 @@ class BackwardsChapter(Chapter):
             self.network.train_batch(self.classifier.shaped(self._image), self._target, SGD(RATE))
             self.moved = int((self.network.values != before).sum())
             self.steps += 1
-            self.tried = True
             self._look()
+            self.found()
 
     def another(self) -> None:
         """Show the next digit that the shipped network misreads."""

@@ -26,7 +26,7 @@ from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL
 from game.explain.figures import points
 from game.explain.tables import Line, from_zero, table
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS
+from game.flight.networks import DECISION_STEPS
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
 from game.ui.context import Context
@@ -141,7 +141,8 @@ class ChoiceChapter(Chapter):
             self._path.append(self.env.position[0].copy())
         if self.over:
             self.results[self.first] = Came(self.came, bool(self.env.outcome[0] == Outcome.LANDED))
-            self.tried, self.changed = len(self.results) > 1, True
+            self.changed = True
+            self.found()
 
     def verdict(self) -> int | None:
         """Return what came of the lowest value; None before it and the highest were flown, and where that was lost."""

@@ -187,7 +187,7 @@ class DownhillChapter(Chapter):
 
     def _note(self) -> None:
         """Keep what this try has shown, once it says something."""
-        first, last = self.line.costs[0], self.line.costs[-1]
+        first, last, before = self.line.costs[0], self.line.costs[-1], dict(self.results)
         if self.valley:
             if len(self.adam.costs) > VALLEY_STEPS:
                 figures = {"plain": self.plain.costs[-1], "adam": self.adam.costs[-1], "steps": VALLEY_STEPS}
@@ -196,7 +196,8 @@ class DownhillChapter(Chapter):
             kind = "long" if last >= first else "right" if last < 0.01 * first else "short"
             figures = {"first": first, "last": last, "steps": len(self.line.costs) - 1}
             self.results[kind] = {"rate": self.rate, **figures}
-        self.tried = bool(self.results)
+        if self.results != before:
+            self.found()
 
     def why(self) -> str:
         templates = texts.LEARN_DOWNHILL_WHY

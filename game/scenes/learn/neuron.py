@@ -132,15 +132,15 @@ class NeuronChapter(Chapter):
         self._judge()
 
     def _judge(self) -> None:
-        self.seconds += DT
+        before, self.seconds = self.seconds, self.seconds + DT
         in_sight = abs(self.env.position[0, 0]) < _SIGHT
         fallen = self.env.outcome[0] != Outcome.FLYING or self.env.tilt[0] > _FALLEN
         if self.seconds > self.best[0] and any(self.weights):
             self.best = (self.seconds, self.weights)
         if fallen or not in_sight:
             self.end, self._over = ("fell" if fallen else "drifted"), _REST
-            self.tried = self.tried or any(self.weights)
-        self.tried = self.tried or self.best[0] >= GOAL
+        if any(self.weights) and (self.end or before < GOAL <= self.seconds):
+            self.found()
 
     def why(self) -> str:
         seconds, weights = self.best
@@ -181,8 +181,10 @@ class NeuronChapter(Chapter):
             canvas.line((world.left, y), (world.right, y), LINE)
             canvas.line((x, world.top), (x, world.bottom), LINE)
             self._lander.draw(canvas, view, alpha)
-        words = texts.LEARN_NEURON_FLIGHT[self.end if self._over else "flies"].format(seconds=self.seconds)
-        canvas.text(words, (box.left + 4, box.top + 18), size=SMALL, colour=MUTE, tabular=True)
+        there = self.seconds >= GOAL
+        words = texts.LEARN_NEURON_FLIGHT[self.end or ("there" if there else "flies")].format(seconds=self.seconds)
+        colour = canvas.palette.good if there else MUTE
+        canvas.text(words, (box.left + 4, box.top + 18), size=SMALL, colour=colour, tabular=True)
         self._draw_neuron(canvas, pygame.FRect(box.left, world.bottom, box.width, _NEURON * box.height))
 
     def _draw_neuron(self, canvas: Canvas, box: pygame.FRect) -> None:

@@ -112,9 +112,9 @@ class PlaneChapter(Chapter):
             self.steps += 1
             if self.steps % _EVERY == 0:
                 self._look()
-            if self.steps >= SPOKEN:
-                self.results[self.units] = max(self._shown, self.results.get(self.units, 0))
-                self.tried = True
+            if self.steps >= SPOKEN and self._shown > self.results.get(self.units, -1):
+                self.results[self.units] = self._shown
+                self.found()
 
     def _look(self) -> None:
         """Ask the network, at every place of the plane, for what its hidden units and its output say."""

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Final
 import pygame
 
 from game.core import texts
-from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Scene, Transition
+from game.core.shelf import LONGEST_NAME, fitting
 from game.drawing.tokens import FAINT
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
-    from game.ui.listing import Row
     from game.ui.panel import Panel
     from game.ui.widget import OnPress
 
@@ -113,21 +112,6 @@ class NameDialog(Dialog):
         self.form.focus(self._entry)
         self._entry.begin()
         return None
-
-
-class ListDialog(Dialog):
-    """Dialog with a list: a press on a row closes it and calls `on_pick` with the row's index."""
-
-    def __init__(self, below: Scene, question: str, rows: Sequence[Row], on_pick: Callable[[int], None]) -> None:
-        self._on_pick, self._rows = on_pick, rows
-        super().__init__(below, question)
-
-    def add_answers(self, panel: Panel) -> None:
-        panel.listing(self._rows, self._pick, texts.PICKING_EMPTY)
-
-    def _pick(self, number: int) -> Transition:
-        self._on_pick(number)
-        return Pop()
 
 
 def _closing(answer: OnPress) -> Callable[[], Transition]:

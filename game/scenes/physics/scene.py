@@ -165,7 +165,7 @@ class PhysicsScene(PanelScene):
         words: list[tuple[str, OnPress]] = [
             (texts.PHYSICS_START_VALUES, self._reset),
             (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
-            (texts.PHYSICS_MORE[self.more], self._open_more),
+            (texts.MORE[self.more], self._open_more),
         ]
         buttons = column.words(words)
         self._inside = buttons[1]
@@ -173,7 +173,7 @@ class PhysicsScene(PanelScene):
         if not self.more:
             return
         column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
-        self.playback.describe(column)
+        column.widget(self.playback.choice())
         column.explain(what["speed"])
         column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
         column.explain(what["contacts"])
@@ -186,7 +186,7 @@ class PhysicsScene(PanelScene):
         return self.context.settings.is_open(_MORE)
 
     def _open_more(self) -> None:
-        self.context.settings.open(_MORE)
+        self.context.settings.unfold(_MORE)
         self.context.apply_settings()
         self.build()
 

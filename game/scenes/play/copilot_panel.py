@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
+from ai.agent.decision import Decision
 from ai.lander.environment import NUM_ACTIONS
 from ai.lander.pilots import COAST
 from game.core import texts
@@ -15,6 +16,7 @@ from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL
 from game.explain.landings import Landing, Landings, RecentLandings, draw_landings
 from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.explain.readouts import draw_share
+from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import HELD, SixFutures
 from game.flight.networks import QPolicy, flew, word
@@ -55,27 +57,27 @@ class CopilotPanel:
         """Say anew what is said, in another language."""
         self._seen = None
 
-    def follow(self, flight: Flight, futures: SixFutures | None = None) -> None:
+    def follow(self, flight: Flight[Crew], futures: SixFutures | None = None) -> None:
         """Update the panel after a step; `futures` are those of a flight that nobody shares."""
         if flight.over:
             return
-        alone = flight.hand is StickHolder.NETWORK and isinstance(flight.network, QPolicy)
-        decision = flight.alone if alone else flight.decision if flight.shared else None
+        alone = flight.chooser.hand is StickHolder.NETWORK and isinstance(flight.chooser.network, QPolicy)
+        decision = flight.choice.decision if alone or flight.chooser.shared else None
         if decision is None and futures:
             self.shown, self._seen = True, None
             self.values = landings_of(futures, flight)
-            self.why = ("" if flight.shared else texts.SIX_FUTURES_WHY, "", "")
+            self.why = ("" if flight.chooser.shared else texts.SIX_FUTURES_WHY, "", "")
             return
         self.shown, self._overridden = decision is not None, self._overridden and decision is self._seen
         if decision is None or decision is self._seen:
             return
         self._seen = decision
-        if decision is flight.alone:
-            self.values = QValues.of(flight.alone)
-            first, second = decision_words(flight.alone)
+        if isinstance(decision, Decision):
+            self.values = QValues.of(decision)
+            first, second = decision_words(decision)
             self.why = texts.COPILOT_PANEL_ALONE, first, second
-        elif flight.decision is not None:
-            self._explain(flight.decision, int(flight.env.target[0]))
+        else:
+            self._explain(decision, int(flight.env.target[0]))
 
     def _explain(self, decision: SharedDecision, pad: int) -> None:
         """Show a shared decision, by its values for one of the pads where there are no futures."""
@@ -118,10 +120,10 @@ class CopilotPanel:
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
 
-def landings_of(futures: SixFutures, flight: Flight) -> Landings:
+def landings_of(futures: SixFutures, flight: Flight[Crew]) -> Landings:
     """Return what comes of each action as a row of the panel."""
     after = [Landing.UNKNOWN if lands is None else Landing.LANDS if lands else Landing.LOST for lands in futures.lands]
-    flown = flight.recording.actions[-1] if flight.recording.actions else COAST
+    flown = flight.choice.push.action
     return Landings(tuple(after), (flown, after[flown]), flown, HELD)
 
 

@@ -12,6 +12,7 @@ from ai.environment import Doubles
 from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
+from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import OutcomeCard
 from game.scenes.play.card import PLACES
@@ -37,7 +38,7 @@ class FlightEnding:
 
     """
 
-    def __init__(self, flight: Flight, pace: TimeScale, reduced_motion: bool) -> None:
+    def __init__(self, flight: Flight[Crew], pace: TimeScale, reduced_motion: bool) -> None:
         self._flight, self._pace, self.calm = flight, pace, reduced_motion
         self._since = 0
         self.whole: CameraTarget | None = None
@@ -77,14 +78,14 @@ class FlightEnding:
 class FlownPath:
     """Path of one flight, recorded step by step and drawn once the flight is over."""
 
-    def __init__(self, flight: Flight) -> None:
+    def __init__(self, flight: Flight[Crew]) -> None:
         self._flight = flight
         self._points: list[Doubles] = [flight.env.position[0].copy()]
         self._hands: list[StickHolder] = []
 
     def follow(self) -> None:
         """Record a step."""
-        if len(self._flight.recording.actions) % _STRIDE == 0 or self._flight.over:
+        if self._flight.at % _STRIDE == 0 or self._flight.over:
             self._points.append(self._flight.env.position[0].copy())
             self._hands.append(self._flight.flown_by)
 

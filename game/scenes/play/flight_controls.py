@@ -6,10 +6,9 @@ from typing import Final
 
 import pygame
 
-from ai.flights.recording import full
-from ai.lander.pilots import COAST
+from ai.lander.push import STEPS, Push
 from game.core.settings import Settings
-from game.input.analogue import Stick, pushed
+from game.input.analogue import pushed
 from game.input.controls import Controls, Held
 
 _FLOWN: Final = (Held.MAIN, Held.LEFT, Held.RIGHT)
@@ -51,7 +50,7 @@ class FlightControls:
         self._controls, self._settings = controls, settings
         self._mouse = MouseStick()
         self._latched = self._held_before = self._switched = False
-        self._shares = full(COAST)  # that were asked for in the step before
+        self._before = Push()  # in the step before
         self._tapped: set[Held] = set()  # pressed since the last step
 
     @property
@@ -84,19 +83,18 @@ class FlightControls:
         self._mouse.down.clear()
         self.begin()
 
-    def read(self, craft: float) -> Stick:
-        """Return the stick in this step, for a craft drawn at the x coordinate `craft`, in points."""
+    def read(self, craft: float) -> Push:
+        """Return the push of the stick in this step, for a craft drawn at the x coordinate `craft`, in points."""
         if self._settings.one_switch:
-            stick = Stick(3 * self.switch)
+            push = Push(STEPS * self.switch)
         else:
             main, side = self._thrust(craft)
             if self._controls.holds(Held.FINE) or _FINE in self._mouse.down:
                 side *= FINE
-            stick = pushed(main, side, self._shares)
-            self._shares = stick.shares or full(stick.action)
+            push = self._before = pushed(main, side, self._before)
         self._tapped.clear()
         self._switched = False
-        return stick
+        return push
 
     def _thrust(self, craft: float) -> tuple[float, float]:
         """Return the shares of thrust asked for, of the main engine and, -1 to 1, of the jets."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pygame
@@ -38,9 +38,8 @@ _HIDDEN: Final = 24.0  # points beyond the edge from which a ghost counts as bey
 class Ghost:
     """A rival's flight, replayed or flown by a network; call `step` once for every step of the player's."""
 
-    def __init__(self, flight: Flight, name: Named) -> None:
+    def __init__(self, flight: Flight[Any], name: Named) -> None:
         self.flight, self._named = flight, name
-        flight.hand_over()
         self._trail = Trails(1, keep=1)
 
     @property
@@ -50,7 +49,7 @@ class Ghost:
     def step(self) -> None:
         flight = self.flight
         was_over = flight.over
-        flight.step(0)
+        flight.step()
         ended = np.array([flight.over and not was_over])
         self._trail.follow(flight.env.position, flight.env.outcome, np.zeros(1, bool), ended)
 

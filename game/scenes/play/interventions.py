@@ -10,6 +10,7 @@ from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.tokens import HUMAN, NET
 from game.explain.readouts import Lamp
+from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.scenes.play.words import changed_by, is_late
 
@@ -40,25 +41,26 @@ class Interventions:
         self._decision: SharedDecision | None = None  # the latest
         self._late = 0  # decisions in a row, up to it, for which a guardian had not looked ahead in time
 
-    def follow(self, flight: Flight) -> None:
-        guards, seen = flight.shared and flight.guarded, self.word
-        guarded = flight.decision if guards else None
+    def follow(self, flight: Flight[Crew]) -> None:
+        guards, seen = flight.chooser.shared and flight.choice.guarded, self.word
+        guarded = flight.choice.together if guards else None
         assist = guarded.assist if guarded else 0.0
         self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
         self._guarded |= guards
-        changed = flight.overridden and (not guards or flight.guard is None or flight.guard.saves)
+        guard = flight.chooser.guard
+        changed = flight.choice.overridden and (not guards or guard is None or guard.saves)
         if changed and self._calm >= _CALM:
             self.moments.append(flight.env.position[0].copy())
         self._calm = 0 if changed else self._calm + 1
-        self._since = 0 if flight.overridden else self._since + 1
-        if flight.decision is not self._decision:
-            self._decision = flight.decision
+        self._since = 0 if flight.choice.overridden else self._since + 1
+        if flight.choice.together is not self._decision:
+            self._decision = flight.choice.together
             self._said = changed_by(guarded) if guarded else ""
             self._late = self._late + 1 if guarded and is_late(guarded) else 0
-        if flight.overridden and 0 < self._late < _LATE:
+        if flight.choice.overridden and 0 < self._late < _LATE:
             self._word = seen
-        elif flight.overridden:
-            self._word = self._said or difference(flight.asked, flight.recording.actions[-1])
+        elif flight.choice.overridden:
+            self._word = self._said or difference(flight.choice.asked.action, flight.choice.push.action)
         elif self._said:
             self._word, self._since = self._said, min(self._since, _FADES + 1)
 
@@ -71,21 +73,23 @@ class Interventions:
         """What the co-pilot has just changed, in one sentence; empty once that is long enough ago to have been read."""
         return self._word if self._since < _LASTS else ""
 
-    def watched(self, flight: Flight) -> bool:
+    def watched(self, flight: Flight[Crew]) -> bool:
         """Whether a guardian watched over a flight to its landing, and can tell how often it saved it.
 
         It cannot if something else was flown only because answers came late: nobody knows whether that was needed.
         """
-        late = flight.guard.late if flight.guard else 0
+        late = flight.chooser.guard.late if flight.chooser.guard else 0
         return self._guarded and flight.outcome is Outcome.LANDED and not (late and not self.moments)
 
-    def lamp(self, flight: Flight) -> Lamp:
+    def lamp(self, flight: Flight[Crew]) -> Lamp:
         """Return shape, colour and glow: disc for who has the stick, ring for hands off, diamond for an override."""
-        if flight.hand is StickHolder.NETWORK:
+        if flight.chooser.hand is StickHolder.NETWORK:
             return "circle", NET, 0.8
         if self._since < _FADES:
             return "diamond", NET, 1.6
-        if flight.shared and flight.flown_by is StickHolder.NETWORK and flight.asked == COAST and not flight.guarded:
+        choice = flight.choice
+        hands_off = choice.by is StickHolder.NETWORK and choice.asked.action == COAST and not choice.guarded
+        if flight.chooser.shared and hands_off:
             return "ring", NET, 0.5
         return "circle", HUMAN, 0.8
 

@@ -16,6 +16,7 @@ from game.core.catalogue import capital
 from game.explain.landings import Landing, Landings
 from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.flight import networks
+from game.flight.choosers import Crew
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import TIPPED
@@ -37,12 +38,12 @@ _LEAST_LOSS: Final = 0.05  # points below the best that are called so
 # What the pilot must know
 
 
-def sentence(flight: Flight, credit: Credit, changed: str, controls: Controls) -> tuple[str, bool]:
+def sentence(flight: Flight[Crew], credit: Credit, changed: str, controls: Controls) -> tuple[str, bool]:
     """Return the one sentence of a flight, and whether it is a warning; `changed` is what help has just changed."""
     if flight.over:
         return "", False
-    by_hand = flight.hand is StickHolder.HUMAN
-    if by_hand and not flight.safe and (words := urgent(flight.env)):
+    by_hand = flight.chooser.hand is StickHolder.HUMAN
+    if by_hand and not flight.chooser.safe and (words := urgent(flight.env)):
         other = Held.RIGHT if turned(flight.env) > 0 else Held.LEFT
         return words.format(main=controls.word(Held.MAIN), other=controls.word(other)), True
     if changed:
@@ -157,14 +158,14 @@ def is_late(decision: SharedDecision) -> bool:
     return bool(decision.overridden[0]) and Landings.of(decision).asked[1] is Landing.UNKNOWN
 
 
-def why_not_saved(flight: Flight, last_chance: LastChance | None) -> str:
+def why_not_saved(flight: Flight[Crew], last_chance: LastChance | None) -> str:
     """Say of a helped flight that was lost why it was not saved, and what would have."""
-    guard = flight.guard
+    guard = flight.chooser.guard
     words = ""
     if guard and guard.bare:
         since, why = guard.bare
         words = texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
-    elif flight.copilot and (guard is None or guard.ahead.problem):
+    elif flight.chooser.copilot and (guard is None or guard.ahead.problem):
         words = texts.NOT_SAVED_BY_VALUES
     if last_chance is None or not words:
         return words

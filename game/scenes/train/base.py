@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import pygame
 
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition
+from game.core.shelf import LibraryError
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, PANEL, SMALL, TITLE
@@ -63,7 +63,6 @@ class TrainingScene(FormScene, ABC):
 
     """
 
-    flows = True
     knobs: KnobsPanel
     charts: TrainingCharts
     panel: Panel
@@ -153,13 +152,13 @@ class TrainingScene(FormScene, ABC):
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        self._settings.open(name)
+        self._settings.unfold(name)
         self.context.apply_settings()
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
         words = {
-            MORE: texts.TRAIN_MORE,
+            MORE: texts.MORE,
             CHARTS: texts.TRAIN_MORE_CHARTS,
             KNOBS: texts.TRAIN_MORE_KNOBS,
             INSIDE: texts.TRAIN_LOOK,
@@ -323,7 +322,7 @@ class TrainingScene(FormScene, ABC):
         if not self._worth_keeping:
             return True
         runs = self.run.collection
-        name = runs.free_name(self._suggestion if self.run.runs else runs.kind.rescued())
+        name = runs.free_name(self._suggestion if self.run.runs else runs.rescued_name)
         if problem := self._save_as(name):
             self.context.note(problem)
         return not problem

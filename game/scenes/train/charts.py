@@ -82,7 +82,7 @@ def _held_out(history: History) -> Line:
 
 
 LANDER_CHARTS: Final = {
-    LANDINGS: ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
+    LANDINGS: ChartKind(_column("success_rate", 100.0), "{:.0f}", (0.0, 100.0)),
     SCORE: ChartKind(
         _column(SCORE), "{:z.0f}", second=_expected, words=lambda: (texts.TRAIN_EXPECTED, texts.TRAIN_SCORES)
     ),

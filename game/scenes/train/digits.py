@@ -23,7 +23,7 @@ from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
 from game.scenes.train.digit_views import ConfusionMatrix
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout, TrainingStatus
-from game.training.digit_models import DigitModels, runs_dir
+from game.training.library import DigitModels
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
 from game.training.run_settings import RunSettings
@@ -57,7 +57,7 @@ class DigitTrainingScene(TrainingScene):
     """
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context, TrainingRun(DIGITS, DigitModels(runs_dir(context.user_dir))))
+        super().__init__(context, TrainingRun(DIGITS, DigitModels(context.user_dir)))
 
     def _build(self) -> None:
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)

@@ -11,7 +11,7 @@ import pygame
 from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
-from ai.training.history import PARTS
+from ai.training.loop import PARTS
 from ai.training.messages import NetworkState
 from game.core import texts
 from game.drawing.canvas import Canvas

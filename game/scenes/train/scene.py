@@ -15,8 +15,9 @@ from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Transition, push
+from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import LINE, NIGHT0, SMALL
+from game.drawing.tokens import HUMAN, LINE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
@@ -29,7 +30,7 @@ from game.scenes.train.layout import Layout, TrainingStatus
 from game.scenes.train.rewind import Rewind
 from game.training.library import Library
 from game.training.record import take_away
-from game.training.run import TrainingRun
+from game.training.run import PACES, TrainingRun
 from game.training.run_kind import LANDERS
 from game.training.run_settings import RunSettings
 from game.ui.charts import Scrubber
@@ -65,7 +66,9 @@ class TrainScene(TrainingScene):
         self.rewind = Rewind(run)
         self.landers = Landers(run, self.rewind)
         self.inside = Inside(run, partial(self.opened, INSIDE))
-        self.lessons = LessonDoor(run, self.context.note)
+        self.lessons = LessonDoor(run, self.context.note, self.context.rng)
+        self._offers = False  # whether there is a first landing to stop at
+        run.set_pace(0 if self._settings.slow_runs else len(PACES) - 1)
         self._advice = Advice(run, self.knobs.turn)
         self._frame = 0
         self._news = False  # of the network, on which there is no advice yet
@@ -77,7 +80,7 @@ class TrainScene(TrainingScene):
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
         now = self.rewind.moment is None
-        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened
+        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened, self._offers
 
     @property
     def _status(self) -> TrainingStatus:
@@ -87,7 +90,7 @@ class TrainScene(TrainingScene):
         landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
         count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
         line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
-        share = 100 * run.history["success"][row]
+        share = 100 * run.history["success_rate"][row]
         if self.rewind.moment is None and self.charts.landed and self.charts.landed[0] is not None:
             share = self.charts.landed[0]  # one number for the title and its chart
         figure = "" if np.isnan(share) else f"{share:.0f}"
@@ -154,8 +157,12 @@ class TrainScene(TrainingScene):
 
     def _describe_foot(self, column: Column) -> None:
         super()._describe_foot(column)
-        if self.run.alive:
-            column.choice("", texts.TRAIN_PACES, self.run.pace, self.run.set_pace, SMALL)
+        column.choice("", texts.TRAIN_PACES, self.run.pace, self._set_pace, SMALL)
+
+    def _set_pace(self, index: int) -> None:
+        self.run.set_pace(index)
+        self._settings.slow_runs = index == 0
+        self.context.apply_settings()
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one."""
@@ -175,6 +182,10 @@ class TrainScene(TrainingScene):
         return self.landers.beside(chosen.name if chosen else texts.LAB_HEADING)
 
     def _describe_hint(self, column: Column) -> bool:
+        if self._offers and self.run.first_landing:
+            column.text(texts.LESSON_OFFER.format(slot=self.run.first_landing.slot + 1), size=SMALL, colour=HUMAN)
+            column.words([(texts.LESSON_LOOK, self._look), (texts.LESSON_FLY_ON, self._fly_on)])
+            return True
         if self._advice.shown:
             self._advice.describe(column)
         return self._advice.shown
@@ -211,7 +222,10 @@ class TrainScene(TrainingScene):
         self.inside.update()
         # Tasks that take a millisecond or two take turns, one per frame.
         self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        return self._finish_update() or self.lessons.update()
+        self._offer()
+        outcome = self._finish_update()
+        lesson = self.lessons.answer()
+        return outcome or (push("lesson", lesson, self.lessons, self.run.swarm_state) if lesson else None)
 
     def _listen_to_run(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
@@ -269,6 +283,24 @@ class TrainScene(TrainingScene):
         """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
         chosen = self.landers.shown.chosen
         self.lessons.ask(CAREFUL if chosen is None else chosen, self.rewind.moment)
+
+    def _offer(self) -> None:
+        """Offer once in a player's life to stop at a first landing, and look at what is learned from it."""
+        if self.run.first_landing and not self._settings.lesson_offered and self.run.state is WorkerState.RUNNING:
+            self._offers = self._settings.lesson_offered = True
+            self.context.apply_settings()
+            self._lay()
+            self.form.focus(next(each for each in self.form.widgets if each.label == texts.LESSON_LOOK))
+        self._offers &= self.run.alive
+
+    def _look(self) -> None:
+        """Ask for the lesson of the first landing."""
+        assert self.run.first_landing is not None
+        self._offers = False
+        self.lessons.ask(self.run.first_landing.slot, self.run.first_landing.decisions)
+
+    def _fly_on(self) -> None:
+        self._offers = False
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

@@ -7,7 +7,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot import futures
-from ai.copilot.futures import DECISION_STEPS, KEYS, Here, Lookahead, Push
+from ai.copilot.futures import DECISION_STEPS, Here, Lookahead
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
@@ -15,6 +15,7 @@ from ai.lander.ground import Ground, Pad
 from ai.lander.missions import MISSIONS
 from ai.lander.moment import Moment
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS, Push
 from ai.lander.route import Route
 from ai.lander.rules import nearest_action
 from game.core.assets import MODELS_DIR
@@ -41,7 +42,7 @@ def fly(env, plan):
         if push is None:
             return False
         for _ in range(DECISION_STEPS // env.frame_skip):
-            env.fly(np.array([push.action]), np.array([push[1:]]))
+            env.fly(np.array([push.action]), np.array([push.shares]))
     state = Here.of(env).state
     return tuple(plan.states[-1].tolist()) == state
 
@@ -91,7 +92,7 @@ def test_landers_of_many_worlds_are_flown_as_each_would_be_alone():
         ]
         given = [push or KEYS[0] for push in pushes]
         for _ in range(DECISION_STEPS):
-            env.fly(np.array([push.action for push in given]), np.array([push[1:] for push in given]))
+            env.fly(np.array([push.action for push in given]), np.array([push.shares for push in given]))
     for slot, plan in enumerate(plans):
         assert plan is None or (
             env.outcome[slot] == Outcome.LANDED and tuple(plan.states[-1]) == Here.of(env, slot).state
@@ -101,7 +102,7 @@ def test_landers_of_many_worlds_are_flown_as_each_would_be_alone():
 def test_a_landing_counts_only_with_time_to_spare(agent):
     env = low()
     (plan,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[3],))])
-    seconds = len(plan.actions) / 15
+    seconds = len(plan.shares) / 15
     for time, lands in ((seconds + 1.6, True), (seconds + 1.0, False)):
         env.limits = replace(LIMITS, time=time)
         (again,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[3],))])
@@ -124,7 +125,7 @@ def test_what_comes_first_can_be_several_pushes(agent):
     env = low(start=(0.0, 8.0, 0.0, 0.0, 0.0, 0.0))
     lookahead = Lookahead(agent)
     (future,) = lookahead.futures(Moment.of(env), [(0, KEYS[1])], 4, before=(KEYS[5], KEYS[3]))
-    pushed = future.plan.actions.tolist()
+    pushed = [Push.of(*shares).action for shares in future.plan.shares.tolist()]
     assert pushed[:3] == [5, 3, 1]
     for _ in range(2 * DECISION_STEPS):
         env.fly(np.array([pushed[env.steps[0] // DECISION_STEPS]]))
@@ -143,7 +144,6 @@ def test_very_many_are_flown_in_several_batches(agent, monkeypatch):
     scripted = Lookahead(ScriptedPilot())
     together = scripted.plans(Moment.of(env), asked)
     monkeypatch.setattr(futures, "_BATCH", 3)
-    monkeypatch.setattr(futures, "_GATHERED", 2)  # and those that touch down wait for each other
     for plan, again in zip(together, scripted.plans(Moment.of(env), asked), strict=True):
         assert (plan is None) == (again is None)
         if plan:
@@ -156,7 +156,7 @@ def test_a_leg_of_a_descent_is_flown_along_its_route(agent):
     route, led = Route(leg.route), []
     ahead = SimpleNamespace(observe=lambda *at: led.append(at) or route.observe(*at))
     plans = Lookahead(agent, ahead).plans(Moment.of(env), [(0, (key,)) for key in (KEYS[0], KEYS[3])])
-    assert len(led) >= len(plans[1].actions)
+    assert len(led) >= len(plans[1].shares)
     assert all(plans)
     assert fly(env, plans[1])
     assert env.outcome[0] == Outcome.LANDED
@@ -190,5 +190,5 @@ def test_left_and_right_are_alike():
 
 def test_a_push_of_shares_has_the_nearest_action():
     for key in KEYS:
-        assert Push.of(key.main, key.side) == key
+        assert Push.of(*key.shares) == key
     assert Push.of(0.3, -0.9).action == nearest_action(0.3, -0.9)

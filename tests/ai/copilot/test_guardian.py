@@ -8,11 +8,12 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.futures import KEYS, Future, Here, Lookahead, Plan, Push
+from ai.copilot.futures import Future, Here, Lookahead, Plan
 from ai.copilot.guardian import Guardian, decisions_of
 from ai.lander.anywhere import AnywhereEnv, Site
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
+from ai.lander.push import KEYS, Push
 from game.core.assets import MODELS_DIR
 
 HERE = Here(0, 1.62, (0.0,) * 6)
@@ -33,8 +34,7 @@ def agent():
 
 def plan(*pushes, begin=0):
     """A plan that begins here with these pushes."""
-    actions, shares = np.array([push.action for push in pushes]), np.array([push[1:] for push in pushes])
-    return Plan(begin, 1.62, 0, actions, shares, np.zeros((len(pushes) + 1, 6)))
+    return Plan(begin, 1.62, 0, np.array([push.shares for push in pushes]), np.zeros((len(pushes) + 1, 6)))
 
 
 def lands(*pushes, lasts=True):
@@ -159,7 +159,7 @@ def test_whoever_flies_with_a_weak_stick_and_by_share_alone_is_as_safe(agent):
     weak = np.tile([0.4, -1.0], (1, 1))
     while (env.outcome == Outcome.FLYING).any():
         action, overridden = copilot.share(env.observe(), np.full(1, 4), None, weak, env)
-        flown = np.array([KEYS[a][1:] for a in action])
+        flown = np.array([KEYS[a].shares for a in action])
         env.fly(action, np.where(overridden[:, None], flown, weak))
     assert (env.outcome == Outcome.LANDED).all()
 

@@ -30,10 +30,10 @@ def test_a_run_learns_and_reports_how_it_stands(data):
     assert training.done
     assert [one.step for one in progress] == list(range(1, 31))
     assert progress[-1].epoch == 3
-    assert progress[-1].steps == 30
-    assert [one.step for one in progress if one.held_out is not None] == [10, 20, 30]
+    assert training.steps == 30
+    assert [each["epoch"] for each in training.history] == [1, 2, 3]
     assert np.mean([one.loss for one in progress[-5:]]) < 0.9 * np.mean([one.loss for one in progress[:5]])
-    assert progress[-1].best == max(one.held_out for one in progress if one.held_out is not None)
+    assert training.best == max(each["held_out"] for each in training.history)
     assert progress[0].learning_rate < progress[8].learning_rate > progress[-1].learning_rate
 
 

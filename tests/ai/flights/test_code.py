@@ -5,6 +5,7 @@ import json
 import tracemalloc
 import zlib
 from dataclasses import replace
+from itertools import starmap
 from string import ascii_letters
 from typing import Any
 
@@ -14,10 +15,11 @@ from hypothesis import strategies as st
 
 from ai.flights import code as module
 from ai.flights.code import BEGIN, END, CodeError, code_of, codes_in, flight_of
-from ai.flights.recording import LONGEST, STEPS, Claim, Easing, Recording, SharedFlight, StickHolder, full
+from ai.flights.recording import LONGEST, Claim, Easing, Recording, SharedFlight, StickHolder
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
+from ai.lander.push import KEYS, STEPS, Push
 from ai.lander.rules import AREAS
 from ai.lander.spawns import SPAWNS
 from game.core import texts
@@ -26,9 +28,10 @@ PERSON, NETWORK = StickHolder.HUMAN, StickHolder.NETWORK
 BEFORE = "tranq-0El98Tx0gY33g4kBpSYG2sdlf4lym4X0rTvkkctsEWo1k-over"  # of the game's first version
 
 
-def shared(actions, hands=None, seed=5, **more):
-    """A flight with these actions, and some claim about it."""
-    recording = Recording(seed, "random", actions=actions, hands=hands or [PERSON] * len(actions), **more)
+def shared(pushes, hands=None, seed=5, **more):
+    """A flight with these pushes, or with the actions of keys, and some claim about it."""
+    pushes = [push if isinstance(push, Push) else KEYS[push] for push in pushes]
+    recording = Recording(seed, "random", pushes=pushes, hands=hands or [PERSON] * len(pushes), **more)
     return SharedFlight(recording, Claim(Outcome.LANDED, 84, (0.25, 2.56, -0.0125)))
 
 
@@ -72,16 +75,17 @@ runs = st.lists(st.tuples(st.integers(0, 5), st.sampled_from([PERSON, NETWORK]),
 
 @st.composite
 def flights(draw):
-    steps = [(action, hand) for action, hand, times in draw(runs) for _ in range(times)]
-    actions = [action for action, _ in steps]
+    steps = [(KEYS[action], hand) for action, hand, times in draw(runs) for _ in range(times)]
+    pushes = [push for push, _ in steps]
     leg = draw(st.none() | legs)
     mission = "" if leg else draw(st.sampled_from(["", *MISSIONS]))
-    shares = draw(st.dictionaries(st.integers(0, len(steps) - 1), thrusts, max_size=9)) if steps else {}
-    shares = {step: each for step, each in shares.items() if each != full(actions[step])}
+    sticks = st.dictionaries(st.integers(0, len(steps) - 1), thrusts, max_size=9) if steps else st.just({})
+    for step, push in draw(sticks).items():
+        pushes[step] = Push(*push)
     recording = Recording(
         draw(st.integers(0, 2**128)), draw(st.sampled_from(list(SPAWNS))), 1 if leg else draw(st.sampled_from([1, 3])),
         mission, draw(st.builds(Easing, st.booleans(), st.booleans())), draw(st.integers(0, len(AREAS) - 1)), leg,
-        actions, [hand for _, hand in steps], shares,
+        pushes, [hand for _, hand in steps],
     )  # fmt: skip
     numbers = st.integers(-(10**6), 10**6).map(lambda number: number / 10_000)
     claim = Claim(draw(st.sampled_from(Outcome)), draw(st.integers(0, 500)), draw(st.tuples(numbers, numbers, numbers)))
@@ -97,8 +101,8 @@ def test_a_flight_comes_back_from_its_code_as_it_was(flight):
 
 def test_the_longest_flight_with_a_change_in_every_step_has_a_code():
     rng = np.random.default_rng(0)
-    places = map(tuple, rng.integers([1, -STEPS], [STEPS, STEPS], (LONGEST, 2)).tolist())
-    flight = shared(rng.integers(0, 6, LONGEST).tolist(), shares=dict(enumerate(places)))
+    places = rng.integers([1, -STEPS], [STEPS, STEPS], (LONGEST, 2)).tolist()
+    flight = shared(list(starmap(Push, places)))
     assert flight_of(code_of(flight)) == flight
 
 
@@ -109,7 +113,7 @@ def test_a_flight_takes_few_letters():
     assert len(code_of(shared(taps, seed=2**31 - 1))) < 200
     steps = np.arange(600)
     places = np.column_stack([8 + 7.6 * np.sin(steps / 31), 15 * np.sin(steps / 47)]).round().astype(int).tolist()
-    assert len(code_of(shared([3] * 600, shares=dict(enumerate(map(tuple, places)))))) < 600
+    assert len(code_of(shared(list(starmap(Push, places))))) < 600
 
 
 def test_a_code_may_be_quoted_wrapped_and_among_other_words():
@@ -206,7 +210,7 @@ def test_sticks_move_within_their_ways_and_in_every_step(subtests):
         (b"", "nonsense"),
     ]:
         with subtests.test(moves=moves):
-            assert refusal(remade(values, bytes([0, 3, 255]) + moves)) == kind
+            assert refusal(remade(values, bytes([0, 0, 255]) + moves)) == kind
 
 
 @settings(max_examples=100, deadline=None)
@@ -225,7 +229,7 @@ def test_a_flight_changed_on_purpose_is_a_flight_or_is_refused(flight, data):
         found = flight_of(sealed(bytes(changed) if packed else deflated(bytes(changed))))
     except CodeError:
         return
-    assert len(found.recording.hands) == len(found.recording.actions) <= LONGEST
+    assert len(found.recording.hands) == len(found.recording.pushes) <= LONGEST
     assert found.recording.seed < 10**40
 
 

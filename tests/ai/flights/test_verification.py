@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ai.flights.code import code_of, flight_of
-from ai.flights.recording import Claim, Easing, Recording, SharedFlight, StickHolder, thrust
+from ai.flights.recording import Claim, Easing, Recording, SharedFlight, StickHolder
 from ai.flights.verification import (
     DAILY,
     DESCENT,
@@ -26,7 +26,7 @@ from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
 from ai.lander.ground import Ground, Pad
 from ai.lander.missions import MISSIONS, STARTS
 from ai.lander.pilots import ScriptedPilot
-from ai.lander.rules import ACTION_SHARES
+from ai.lander.push import KEYS, Push
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.input.analogue import pushed
 from tests.support import landers
@@ -44,7 +44,7 @@ KINDS: dict[str, dict[str, Any]] = {
     "a rung of the ladder": {"spawn": "rung_4"},
 }
 DAY = date(2026, 11, 22).toordinal()
-SHORT = [3, 0, 3, 3] * 9
+SHORT = [KEYS[3], KEYS[0], KEYS[3], KEYS[3]] * 9
 
 
 @cache
@@ -52,16 +52,14 @@ def flown(kind, analogue=False):
     """A flight by the scripted pilot, at most half a minute, with a true claim."""
     recording = Recording(11, **{"spawn": "random", **KINDS[kind]})
     env, pilot = begun(recording), ScriptedPilot()
-    while env.outcome[0] == Outcome.FLYING and (step := len(recording.actions)) < 1800:
-        action, shares = int(pilot.act(env.observe())[0]), None
+    while env.outcome[0] == Outcome.FLYING and (step := len(recording.pushes)) < 1800:
+        push = KEYS[int(pilot.act(env.observe())[0])]
         if analogue:  # as a hand on sticks: a little less than all of it
-            main, side = ACTION_SHARES[action].tolist()
-            action, shares = pushed(main * 0.95, side * (0.6 + 0.4 * (step % 30 < 20)))
-        if shares:
-            recording.shares[step] = shares
-        recording.actions.append(action)
+            main, side = push.shares
+            push = pushed(main * 0.9, side * (0.6 + 0.4 * (step % 30 < 20)), Push())
+        recording.pushes.append(push)
         recording.hands.append(StickHolder.HUMAN)
-        env.fly(np.array([action]), thrust(shares))
+        env.fly(np.array([push.action]), np.array([push.shares]))
     return claimed(recording, earned(env, recording), recording.mission)
 
 
@@ -78,7 +76,7 @@ def test_a_code_of_every_kind_is_read_to_the_same_flight_and_earns_the_same_alon
     for number, (flight, real) in enumerate(rows):
         kind, analogue = keys[number]
         with subtests.test(kind=kind, analogue=analogue):
-            assert bool(flight.recording.shares) == analogue
+            assert set(flight.recording.pushes).issubset(KEYS) != analogue
             assert read[number].recording == flight.recording
             assert together[number] == fly_again([flight.recording])[0] == real
             assert is_true(read[number], real)
@@ -98,7 +96,7 @@ def test_flights_begin_as_they_always_did():
 
 def test_true_claims_are_true_and_wrong_ones_are_not():
     flight, real = flown("plain")
-    claim, actions, (x, y, angle) = flight.claim, flight.recording.actions, flight.claim.end
+    claim, pushes, (x, y, angle) = flight.claim, flight.recording.pushes, flight.claim.end
     assert is_true(replace(flight, claim=replace(claim, end=(x + TOLERANCE / 2, y, angle))), real)
     for wrong in (
         replace(claim, points=claim.points + 1),
@@ -107,11 +105,11 @@ def test_true_claims_are_true_and_wrong_ones_are_not():
         replace(claim, medal=1),
     ):
         assert not is_true(replace(flight, claim=wrong), real)
-    longer = replace(flight.recording, actions=[*actions, 3, 3])  # what is recorded after the end is not flown
+    longer = replace(flight.recording, pushes=[*pushes, *KEYS])  # what is recorded after the end is not flown
     assert fly_again([longer])[0] == real
     assert not is_true(replace(flight, recording=longer), real)
     for steps in (60, 0):  # a record that stops before the end has earned nothing
-        short = fly_again([replace(flight.recording, actions=actions[:steps])])[0]
+        short = fly_again([replace(flight.recording, pushes=pushes[:steps])])[0]
         assert (short.outcome, short.points, short.steps) == (Outcome.FLYING, 0, steps)
 
 
@@ -133,7 +131,7 @@ def test_a_medal_is_for_the_mission_as_it_is():
 
 def placed(course="", seed=DAY, spawn="random", pads=1, **rest):
     """A short flight with a true claim but, maybe, for its course."""
-    recording = Recording(seed, spawn, pads, actions=SHORT, **rest)
+    recording = Recording(seed, spawn, pads, pushes=SHORT, **rest)
     return claimed(recording, fly_again([recording])[0], course)
 
 

@@ -292,12 +292,46 @@ def test_rectifiers_get_he_weights():
         assert np.abs(dense[1].weights).max() <= 1 / np.sqrt(300)
 
 
-def test_weights_somebody_looked_at_are_not_drawn_again():
-    layer = FullyConnectedLayer(3, 2)
-    layer.weights[...] = 7
-    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(layer)
+@pytest.mark.parametrize("when", ["alone", "in a network"])
+def test_weights_that_somebody_has_set_are_not_drawn_again(when):
+    layer, network = FullyConnectedLayer(3, 2), NeuralNetwork(*CostFunctions.use_mse())
+    if when == "in a network":
+        network.add_layer(layer)
+    layer.parameters[0].value = np.full((3, 2), 7)
+    if when == "alone":
+        network.add_layer(layer)
     network.add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
     np.testing.assert_array_equal(network.predict(np.ones(3)), [21, 21])
+    np.testing.assert_array_equal(network.values, [7] * 6 + [0] * 2)
+
+
+def test_looking_at_a_network_while_it_is_built_changes_nothing_of_it():
+    networks = [NeuralNetwork(*CostFunctions.use_mse()) for _ in range(2)]
+    for make in (
+        lambda: FullyConnectedLayer(9, 64), lambda: LayerNormalisation(64),
+        lambda: ActivationLayer(*ACTIVATION_ROWS["relu"]), lambda: DuelingLayer(64, 3),
+        lambda: ActivationLayer(*ACTIVATION_ROWS["leaky_relu"]),
+    ):  # fmt: skip
+        for network in networks:
+            network.add_layer(make())
+        _ = networks[1].values, networks[1].gradients, [layer.parameters for layer in networks[1].layers]
+        networks[1].copy()
+    np.testing.assert_array_equal(networks[0].values, networks[1].values)
+    dense: Any = networks[1].layers[0]
+    assert dense.weights.std() == pytest.approx(np.sqrt(2 / 9), rel=0.1)
+
+
+def test_a_parameter_takes_values_of_its_shape_and_refuses_others():
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(3, 2))
+    weights, bias = network.layers[0].parameters
+    weights.value = np.arange(6).reshape(3, 2)
+    bias.value -= 1
+    weights.gradient = np.ones((3, 2))
+    np.testing.assert_array_equal(network.values[:8], [0, 1, 2, 3, 4, 5, -1, -1])
+    np.testing.assert_array_equal(network.gradients[:6], 1)
+    for wrong in (np.ones(2), np.ones((3, 2), complex), "fast", None):
+        with pytest.raises(ValueError, match=r"weights are numbers of shape \(3, 2\), not"):
+            weights.value = wrong
 
 
 def test_sizes_and_options_are_checked():

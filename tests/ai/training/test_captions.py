@@ -10,7 +10,8 @@ from ai.training.captions import RULES, caption
 from ai.training.config import Config
 from ai.training.curves import RecentCurves
 from ai.training.hints import Adviser
-from ai.training.history import History, Point
+from ai.training.history import History
+from tests.support.points import point
 from tests.support.recordings import growing, names
 
 
@@ -26,7 +27,7 @@ def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
                 shown = found.name if found else ""
                 said.add(shown)
                 figures = {name: float(value) for name, value in found.values.items()} if found else {}
-                assert agrees(shown, figures, read.now("success"), run.history), found
+                assert agrees(shown, figures, read.now("success_rate"), run.history), found
     assert {"steady", "rises", "falls", "collapsed", ""} <= said
 
 
@@ -40,7 +41,7 @@ def agrees(name: str, figures: dict[str, float], now: float, history: History) -
         case "falls":
             return figures["before"] > 100 * now + 5
         case "collapsed":
-            return figures["best"] == 100 * np.nanmax(history["success"])
+            return figures["best"] == 100 * np.nanmax(history["success_rate"])
         case "high":
             return now >= 0.97
         case "unknown":
@@ -55,8 +56,18 @@ def test_a_curve_that_falls_again_is_not_said_to_rise(subtests: pytest.Subtests)
         with subtests.test(last=last):
             history = History()
             for row, success in enumerate(curve.tolist()):
-                history.append(Point(seconds=row, decisions=1000.0 * row, episodes=10.0 * row, success=success,
-                                     mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05, stage=0.0))  # fmt: skip
+                history.append(
+                    point(
+                        seconds=row,
+                        decisions=1000.0 * row,
+                        episodes=10.0 * row,
+                        success_rate=success,
+                        mean_return=100.0,
+                        loss=0.05,
+                        mean_q=0.7,
+                        epsilon=0.05,
+                    )
+                )
             found = caption(RecentCurves(history, Config()))
             assert (found.name if found else None) == name
 
@@ -105,7 +116,7 @@ def test_no_caption_speaks_against_a_hint(name: str):
 def test_a_hint_on_the_screen_silences_praise():
     run = next(
         each for each in growing("modern healthy")
-        if each.history["decisions"][-1] > 100_000 and each.history["success"][-8:].min() >= 0.97
+        if each.history["decisions"][-1] > 100_000 and each.history["success_rate"][-8:].min() >= 0.97
     )  # fmt: skip
     read = RecentCurves(run.history, run.config)
     assert [caption(read, hinted=hinted).name for hinted in (False, True)] == ["high", "steady"]

@@ -1,4 +1,3 @@
-from inspect import getgeneratorlocals
 from itertools import count
 
 import numpy as np
@@ -7,11 +6,11 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.mnist import load_part
-from ai.digits.training import DigitTraining, confusion
+from ai.digits.training import DigitProgress, DigitTraining, confusion
 from ai.digits.validation import EXAMPLES, Confusion
 from ai.training import digit_session
 from ai.training.digit_session import DigitSession
-from ai.training.history import REVERTED, DigitPoint, SettingChange, Validation
+from ai.training.history import REVERTED, SettingChange, Validation
 from ai.training.messages import Refused, RunStarted, Saved
 from ai.training.run import resume
 
@@ -38,7 +37,7 @@ def test_a_run_reports_how_it_begins_how_it_stands_and_what_it_misreads(data):
     clock = map(float, count()).__next__  # it is measured for a share of the time, whatever else runs here
     messages = [each for turn in DigitSession.live(SMALL, 4, data=data, clock=clock) for each in turn]
     assert messages[0] == RunStarted(SMALL, 4, 0, "", 30)
-    points, scores = kinds(messages, DigitPoint), kinds(messages, Validation)
+    points, scores = kinds(messages, DigitProgress), kinds(messages, Validation)
     assert points[0].step == 1
     assert [one.seconds for one in points] == sorted(one.seconds for one in points)
     assert scores[-1].success > scores[0].success
@@ -83,7 +82,7 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     assert (saved.folder, saved.problem) == (tmp_path / "asked meanwhile", "")
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.1
-    assert not kinds(messages, DigitPoint)
+    assert not kinds(messages, DigitProgress)
     assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
 
 
@@ -94,7 +93,7 @@ def test_live_knobs_turn_and_others_are_refused(data):
     (refused,) = run.send(("change", "hidden", (3,)))
     assert isinstance(refused, Refused)
     assert isinstance(run.send(("change", "augmentation", 7.0))[0], Refused)
-    rates = [each.learning_rate for turn in run for each in kinds(turn, DigitPoint)]
+    rates = [each.learning_rate for turn in run for each in kinds(turn, DigitProgress)]
     assert max(rates) <= 1e-4
 
 
@@ -122,7 +121,7 @@ def ruin(run):
 def test_a_ruined_network_can_go_back_to_its_best(data):
     run = DigitSession.live(RUINED, 4, data=data)
     next(run)
-    training = getgeneratorlocals(run)["session"].training
+    training = run.training
     ticks = count()
     training.clock = lambda: float(next(ticks))  # it is measured for a share of the time, whatever else runs here
     messages = ruin(run)

@@ -12,16 +12,14 @@ from ai.training.config import PRESETS, Config
 from ai.training.curves import RecentCurves, loss_explodes, returns, values_run_away
 from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint
-from ai.training.history import Checkpoint, History, Point, SettingChange
-from ai.training.loop import Training
+from ai.training.history import Checkpoint, History, SettingChange
+from ai.training.loop import Progress, Training
+from tests.support.points import point, point_of
 
 MODERN = PRESETS["modern"]
 NAN = float("nan")
-HEALTHY = Point(
-    seconds=0.0, decisions=0.0, episodes=0.0, success=0.97, mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05,
-    stage=0.0, crashed=0.02, out_of_bounds=0.0, timed_out=0.01,
-)  # fmt: skip
-Curve = Callable[[float], Point]  # of the share of the run that is over
+HEALTHY = point(success_rate=0.97, mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05, crashed=0.02, timed_out=0.01)
+Curve = Callable[[float], Progress]  # of the share of the run that is over
 
 
 def history(curve: Curve, points: int = 400, decisions: float = 400_000, seconds: float = 40.0) -> History:
@@ -58,14 +56,14 @@ def remedy(name: str, curve: Curve, config: Config = MODERN) -> dict[str, Any]:
 # Rules
 
 
-CRASHES = {"success": 0.0, "crashed": 0.97, "out_of_bounds": 0.02, "timed_out": 0.01}
+CRASHES = {"success_rate": 0.0, "crashed": 0.97, "out_of_bounds": 0.02, "timed_out": 0.01}
 
 
 def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
     for name, curve, config in [
         ("crashes", points(**CRASHES), MODERN),
         ("small_memory", points(), MODERN.changed(replay_size=256)),
-        ("overfed", points(success=0.03), MODERN.changed(num_envs=1)),
+        ("overfed", points(success_rate=0.03), MODERN.changed(num_envs=1)),
         ("random", points(epsilon=0.6), MODERN),
     ]:
         with subtests.test(name=name, config=config):
@@ -89,27 +87,27 @@ def test_values_and_losses_that_run_away_are_seen_and_others_are_not():
 
 
 def test_rules_hold_their_peace(subtests: pytest.Subtests):
-    begins = {"success": 0.0, "crashed": 0.6, "timed_out": 0.4, "epsilon": 0.9, "loss": 0.3, "mean_q": -0.5}
+    begins = {"success_rate": 0.0, "crashed": 0.6, "timed_out": 0.4, "epsilon": 0.9, "loss": 0.3, "mean_q": -0.5}
     for number, (curve, config, options) in enumerate([
         *((points(), PRESETS[base], {}) for base in PRESETS),
         (points(**begins), MODERN, {"points": 50, "decisions": 50_000}),
         (later(0.97, loss=0.3), MODERN, {}),  # modern rises and falls by a factor of 3
-        (later(0.999, success=0.3), MODERN, {}),  # one bad point
-        (later(0.9, success=0.75), MODERN, {}),
+        (later(0.999, success_rate=0.3), MODERN, {}),  # one bad point
+        (later(0.9, success_rate=0.75), MODERN, {}),
         (points(mean_q=2.9), MODERN, {}),
-        (points(crashed=0.1, success=0.9), MODERN, {}),
-        (lambda share: replace(HEALTHY, success=0.05 + 0.7 * share), MODERN, {}),  # slow, but it gets better
-        (lambda share: replace(HEALTHY, stage=float(share > 0.9), success=0.1 if share > 0.9 else 0.97), MODERN, {}),
+        (points(crashed=0.1, success_rate=0.9), MODERN, {}),
+        (lambda share: replace(HEALTHY, success_rate=0.05 + 0.7 * share), MODERN, {}),  # slow, but it gets better
+        (lambda share: replace(HEALTHY, stage=share > 0.9, success_rate=0.1 if share > 0.9 else 0.97), MODERN, {}),
         (lambda share: replace(HEALTHY, loss=NAN if share < 0.5 else 0.05), MODERN, {}),
         (points(loss=NAN, mean_q=NAN), MODERN, {}),  # not known, as when a run goes on
-        (later(0.95, success=0.3), MODERN, {}),  # a bad hundred flights
+        (later(0.95, success_rate=0.3), MODERN, {}),  # a bad hundred flights
     ]):  # fmt: skip
         with subtests.test(number=number):
             assert holding(curve, config, **options) == set()
 
 
 def test_no_number_stops_a_rule():
-    for column in ("loss", "mean_q", "success", "epsilon", "crashed", "timed_out"):
+    for column in ("loss", "mean_q", "success_rate", "epsilon", "crashed", "timed_out"):
         for when in (0.0, 0.5, 0.999):
             holding(later(when, **{column: NAN}))
         holding(points(**{column: NAN}), points=1)
@@ -160,7 +158,7 @@ def test_a_configuration_takes_every_remedy():
 def test_what_stays_of_a_change_leads_back_to_before_it_and_what_was_undone_is_not_blamed():
     paid = MODERN.turned("reward_weights.time", 5.0)
     change = SettingChange(200_000, "reward_weights.time", -0.4, 5.0)
-    run = history(later(0.5, success=0.2))
+    run = history(later(0.5, success_rate=0.2))
     for decisions in (0, 180_000, 380_000):
         run.append(Checkpoint(0.0, decisions, 0.5, np.zeros(3, dtype=np.float32)))
     run.append(change)
@@ -182,7 +180,7 @@ def watch(adviser: Adviser, run: History, config: Config = MODERN, start: int = 
     for checkpoint in run.checkpoints:
         growing.append(checkpoint)
     for number, row in enumerate(numbers):
-        growing.append(replace(Point(*row[:12].tolist()), parts=tuple(row[12:].tolist())))
+        growing.append(point_of(row))
         if number >= start:
             shown.append(adviser.advise(growing, config))
     return shown
@@ -230,7 +228,7 @@ def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once()
     adviser = Adviser(config)
     growing, moments = History(), []
     for row in run.points:
-        growing.append(Point(*row[:12].tolist()))
+        growing.append(point_of(row))
         if adviser.advise(growing, config):
             moments.append(float(row[0]))
             adviser.apply()
@@ -270,8 +268,5 @@ def test_nothing_is_said_of_a_run_that_starts_well():
     training, run, adviser = Training(config, evaluate_every=0), History(), Adviser(config)
     while training.agent.decisions < 30_000:
         progress = training.advance()
-        run.append(Point(
-            progress.decisions / 1_000, progress.decisions, progress.episodes, progress.success_rate,
-            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, 0.0, *progress.shares[1:],
-        ))  # fmt: skip
+        run.append(replace(progress, seconds=progress.decisions / 1_000))
         assert adviser.advise(run, config) is None, progress.decisions

@@ -10,9 +10,9 @@ from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping
 from ai.training.config import Config, gym_config
-from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
+from ai.training.history import REVERTED, Checkpoint, History, SettingChange, Validation
 from ai.training.lander_session import LanderSession
-from ai.training.loop import Training
+from ai.training.loop import PARTS, Progress, Training
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from ai.training.run import resume
 from ai.training.tasks import LanderTask
@@ -59,8 +59,8 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
     scores = []
     for _ in range(50):
         messages += next(run)
-        score = headless.advance().evaluation
-        scores += [score] if score else []
+        headless.advance()
+        scores += [headless.evaluation] if headless.evaluation else []
     answer = run.send(("save", tmp_path / "run"))
     assert of(Saved, answer) == [Saved(tmp_path / "run")]
     saved = resume(Training, tmp_path / "run")
@@ -89,13 +89,13 @@ def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_
         # No lander moves further than that in 1/15 s: those whose flight has ended are still where it did.
         assert (np.abs(sight.position - before.position)[goes_on] < 1.5).all()
         assert (np.abs(sight.earned[~goes_on]) < 150).all(), "they have begun anew"
-    points = of(Point, messages)
+    points = of(Progress, messages)
     assert (np.diff([point.decisions for point in points]) == 256).all()
     last = points[-1]
     assert last.episodes > 10
     assert sum(last.parts) == pytest.approx(last.mean_return, abs=1e-3)
     assert len(last.parts) == len(PARTS)
-    assert last.success + last.crashed + last.out_of_bounds + last.timed_out == pytest.approx(1.0)
+    assert last.success_rate + last.crashed + last.out_of_bounds + last.timed_out == pytest.approx(1.0)
     ended = np.concatenate([sight.outcome[sight.outcome != 0] for sight in sights])[: int(last.episodes)][-100:]
     assert last.crashed == pytest.approx((ended == Outcome.CRASHED).mean(), abs=0.05)
 
@@ -151,7 +151,7 @@ def trained(begin, config, name, value):
     """A run whose knob is turned to a value after some decisions, or None as it was."""
     run = begin(config)
     messages_in(run, 5)
-    training = run.gi_frame.f_locals["session"].training
+    training = run.training
     if name.startswith("success"):  # there are no landings yet to learn from: give it some
         cells = training.agent.replay.transitions
         picked = [part[:64].copy() for part in cells]
@@ -258,7 +258,7 @@ def test_a_full_disk_is_reported_once_and_training_goes_on(begin, tmp_path, monk
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     messages = messages_in(run, 90)
-    run.gi_frame.f_locals["session"].training.agent.replay.transitions.reward[:] = np.nan
+    run.training.agent.replay.transitions.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
         messages.extend(chain.from_iterable(islice(run, 200)))
     good = of(Checkpoint, messages)[-1]
@@ -267,13 +267,13 @@ def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(be
     assert np.array_equal(kept.agent.network.values, good.values)
     assert History.read(tmp_path / "keep").checkpoints[-1].decisions == good.decisions
     again = begin(TINY, resume=tmp_path / "keep")
-    assert of(Point, messages_in(again, 30))
+    assert of(Progress, messages_in(again, 30))
 
 
 def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     messages = messages_in(run, 78)
-    inside = run.gi_frame.f_locals["session"]
+    inside = run
     assert of(Saved, run.send(("save", tmp_path / "keep"))) == [Saved(tmp_path / "keep")]
     inside.training.agent.target.values[3] = np.nan  # behind the back of every check
     inside.training.agent.learn = lambda: None
@@ -300,10 +300,10 @@ def test_a_run_that_goes_on_goes_on_with_its_curves_and_learns_at_once(begin, tm
     again = begin(resume=tmp_path / "run")
     (started,) = of(RunStarted, next(again))
     assert (started.lost, started.decisions) == ("", 102 * 32)
-    points = of(Point, messages_in(again, 40))
+    points = of(Progress, messages_in(again, 40))
     assert points[0].decisions == 103 * 32
     assert np.isfinite([points[0].loss, points[0].mean_q]).all(), "its memory is there"
-    assert np.isnan(points[0].success), "none of its new flights has ended"
+    assert np.isnan(points[0].success_rate), "none of its new flights has ended"
     again.send(("save", tmp_path / "again"))
     history = History.read(tmp_path / "again")
     assert (np.diff(history["decisions"]) > 0).all()
@@ -312,7 +312,7 @@ def test_a_run_that_goes_on_goes_on_with_its_curves_and_learns_at_once(begin, tm
 
 def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     run = begin()
-    before = of(Point, messages_in(run, 150))
+    before = of(Progress, messages_in(run, 150))
     assert np.isnan(before[0].mean_return), "no flight had ended"
     assert np.isnan(before[0].loss)
     assert before[-1].mean_return < -50
@@ -320,7 +320,7 @@ def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     remove_state(tmp_path / "run")
     messages = messages_in(begin(resume=tmp_path / "run"), 60)
     assert "empty memory" in of(RunStarted, messages)[0].lost
-    after = of(Point, messages)
+    after = of(Progress, messages)
     assert after[0].mean_return != 0.0, "of the hundred flights before"
     assert np.isnan([after[0].loss, after[0].mean_q]).all(), "it has not learnt since"
     assert np.isfinite([after[-1].loss, after[-1].mean_q]).all()
@@ -354,7 +354,7 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     assert marks() == [dragged, rate, ("discount", 0.9, 0.82)], "the mark of before stays"
     for _ in range(3):
         turn("discount", 0.9)
-    session = run.gi_frame.f_locals["session"]
+    session = run
     assert session.history.setting_changes == history.setting_changes
     assert session.training.config.discount == 0.9
 

@@ -1,7 +1,5 @@
 """What schedules make of the settings."""
 
-from inspect import getgeneratorlocals
-
 import pytest
 
 from ai.agent.schedule import target_rate
@@ -19,7 +17,7 @@ TINY = Config(
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     run = LanderSession.live(TINY)
     messages = [next(run)]
-    training = getgeneratorlocals(run)["session"].training
+    training = run.training
     messages += [next(run) for _ in range(80)]
     assert isinstance(messages[0][-2], InForce) or any(isinstance(each, InForce) for each in messages[0])
     (said,) = [each for each in run.send(("change", "discount", 0.9)) if isinstance(each, InForce)]

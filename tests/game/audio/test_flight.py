@@ -2,8 +2,9 @@ import numpy as np
 
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS
 from game.audio.flight_sounds import FlightSound
-from game.flight.flight import Flight
+from tests.support.flights import begun
 from tests.support.listener import Listener
 
 STANDING = PARAMS.pad_top + PARAMS.stand
@@ -14,7 +15,7 @@ class Heard:
     """A flight with somebody who listens."""
 
     def __init__(self, *start: float, warns: bool = True) -> None:
-        self.flight = Flight(seed=3)
+        self.flight = begun(seed=3)
         env = self.flight.env
         env.place(np.ones(1, bool), np.array([start or (float(env.pad[0, 0]), STANDING + 8, 0.0, 0.0, 0.0, 0.0)]))
         self.sound = Listener()
@@ -22,7 +23,7 @@ class Heard:
 
     def step(self, action: int = 0, number: int = 1) -> None:
         for _ in range(number):
-            self.flight.step(action)
+            self.flight.step(KEYS[action])
             self.ears.follow(NOTHING)
 
     def to_the_end(self, pilot: ScriptedPilot | None = None) -> list[str]:
@@ -33,7 +34,7 @@ class Heard:
 
 
 def over_the_pad(height: float, across: float = 0.0, angle: float = 0.0, fall: float = 0.0) -> Heard:
-    middle = float(Flight(seed=3).env.pad[0, 0])
+    middle = float(begun(seed=3).env.pad[0, 0])
     return Heard(middle + across, STANDING + height, 0.0, -fall, angle, 0.0)
 
 

@@ -75,7 +75,7 @@ def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
     game.post(pygame.KEYUP, key=UP, mod=0)
     sound.heard()
     game.key(pygame.K_TAB)
-    assert scene.flight.hand is StickHolder.NETWORK
+    assert scene.flight.chooser.hand is StickHolder.NETWORK
     assert sound.heard()[0] == "to_network"
     game.key(pygame.K_TAB)
     assert "to_human" in sound.heard()

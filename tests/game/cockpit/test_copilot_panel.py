@@ -3,6 +3,7 @@ import pygame
 import pytest
 
 from ai.lander.environment import Cause, Outcome
+from ai.lander.push import KEYS
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.explain.landings import Landing, Landings, RecentLandings
@@ -11,6 +12,7 @@ from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
 from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
+from tests.support.flights import begun
 from tests.support.reading import Weighs
 
 
@@ -23,17 +25,17 @@ class Wavers(Weighs):
 
 def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over():
     for before in range(8):
-        flight = Flight(3, Wavers(), shares=False)
+        flight = begun(3, Wavers(), shares=False)
         copilot_panel = CopilotPanel()
         for _ in range(before):
-            flight.step(3)
+            flight.step(KEYS[3])
             copilot_panel.follow(flight)
-        flight.hand_over()
+        flight.chooser.hand_over()
         seen = set()
         for _ in range(20):
-            flight.step(0)
+            flight.step()
             copilot_panel.follow(flight)
-            flown = flight.recording.actions[-1]
+            flown = flight.recording.pushes[-1].action
             assert copilot_panel.shown
             assert copilot_panel.values.flown == np.argmax(copilot_panel.values.points) == flown, before
             seen.add(flown)
@@ -51,12 +53,12 @@ class Damaged(Wavers):
 def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
     shares: bool, monkeypatch: pytest.MonkeyPatch
 ):
-    flight = Flight(3, Damaged())
-    flight.help(0.5)
+    flight = begun(3, Damaged())
+    flight.chooser.help(0.5)
     if not shares:
-        flight.hand_over()
+        flight.chooser.hand_over()
     copilot_panel = CopilotPanel()
-    flight.step(3)
+    flight.step(KEYS[3])
     copilot_panel.follow(flight)
     drawn = Drawn(monkeypatch)
     copilot_panel.draw(Canvas(pygame.Surface((1280, 720))), 0.5)
@@ -88,18 +90,18 @@ FIGURES = {gauge.cause: name for name, gauge in GAUGES.items() if gauge.cause}
 
 def dropped(start: tuple[float, ...]) -> tuple[Flight, dict[str, Readout]]:
     """Let a craft fall from a start; return its flight, and the read-outs that stay at the end."""
-    flight, last = Flight(1), dict[str, Readout]()
+    flight, last = begun(1), dict[str, Readout]()
     flight.env.place(np.ones(1, bool), np.array([start]))
     while not flight.over:
         last = flight_readouts(flight.env)
-        flight.step(0)
+        flight.step()
     return flight, at_touch(last, flight.env)
 
 
 def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
     rng, seen = np.random.default_rng(0), 0
     for _ in range(60):
-        pad = Flight(1).env.ground.pads[0]
+        pad = begun(1).env.ground.pads[0]
         aside = rng.choice([-1, 1]) * (pad.width / 2 + rng.uniform(-0.5, 2.0))
         flight, readouts = dropped((
             pad.x + aside, pad.top + rng.uniform(2, 5), rng.uniform(-3, 3), -rng.uniform(0, 5),
@@ -121,7 +123,7 @@ def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
 
 
 def test_a_landing_and_a_soft_touch_mark_nothing():
-    pad = Flight(1).env.ground.pads[0]
+    pad = begun(1).env.ground.pads[0]
     for x in (pad.x, pad.x + pad.width):
         flight, readouts = dropped((x, pad.top + 1.5, 0.0, -0.2, 0.0, 0.0))
         assert not flight.wrecked

@@ -5,18 +5,20 @@ import pygame
 import pytest
 
 from ai.lander.environment import PARAMS, Outcome
+from ai.lander.push import KEYS
 from game.core import texts
 from game.core.settings import Settings, SettingsFile
 from game.flight import networks
 from game.flight.credit import ASSISTS, Credit
-from game.flight.flight import DECISION_STEPS, Flight, StickHolder
+from game.flight.flight import Flight, StickHolder
 from game.flight.logbook import Records
-from game.scenes.play.challenge import Challenge
+from game.flight.networks import DECISION_STEPS
+from game.scenes.play.challenge import Rules
 from game.scenes.play.interventions import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import begun, play
 from tests.support.reading import Weighs
 from tests.support.screens import opened, save_settings
 from tests.support.written import words_written
@@ -48,8 +50,8 @@ class Falls(Wants):
 
 
 def shared(network: Wants | None = None, assist: float = 0.5, **kinds: object) -> Flight:
-    flight = Flight(1, network or Wants(), **kinds)
-    flight.help(assist)
+    flight = begun(1, network or Wants(), **kinds)
+    flight.chooser.help(assist)
     return flight
 
 
@@ -59,41 +61,41 @@ def keys(seed: int, steps: int) -> list[int]:
 
 
 def test_who_flies_is_said_by_the_word_of_the_help():
-    flight = Flight(1, Wants())
-    credit = Credit(flight, Settings(), Challenge())
+    flight = begun(1, Wants())
+    credit = Credit(flight, Settings(), Rules())
     for word, assist in (("guard", ASSISTS["guard"]), ("guard", 0.3), ("guide", ASSISTS["guide"])):
-        flight.help(assist)
+        flight.chooser.help(assist)
         assert credit.header == texts.YOU_SHARE[word]
 
 
 def test_without_assist_every_action_is_the_persons_and_with_it_bad_ones_are_changed():
     flight = shared(assist=0.0)
     for held in keys(1, 60):
-        flight.step(held)
+        flight.step(KEYS[held])
         assert flight.env.actions[0] == held
         assert flight.flown_by is StickHolder.HUMAN
-        assert not flight.overridden
-    flight.help(0.5)
-    flight.step(LEFT)  # worth hardly less than the best
-    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (LEFT, False, StickHolder.HUMAN)
-    flight.step(RIGHT)
-    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, True, StickHolder.NETWORK)
+        assert not flight.choice.overridden
+    flight.chooser.help(0.5)
+    flight.step(KEYS[LEFT])  # worth hardly less than the best
+    assert (flight.env.actions[0], flight.choice.overridden, flight.flown_by) == (LEFT, False, StickHolder.HUMAN)
+    flight.step(KEYS[RIGHT])
+    assert (flight.env.actions[0], flight.choice.overridden, flight.flown_by) == (MAIN, True, StickHolder.NETWORK)
 
 
 def test_hands_off_is_the_networks_and_no_override():
     flight = shared(assist=0.1)
-    flight.step(COAST)
-    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, False, StickHolder.NETWORK)
+    flight.step()
+    assert (flight.env.actions[0], flight.choice.overridden, flight.flown_by) == (MAIN, False, StickHolder.NETWORK)
     assert flight.share == 0.0
 
 
 def test_a_tap_of_one_step_is_heard_at_once_and_let_go_at_once():
     flight = shared()
     for _ in range(2 * DECISION_STEPS + 1):
-        flight.step(COAST)
-    flight.step(LEFT)
+        flight.step()
+    flight.step(KEYS[LEFT])
     assert flight.env.actions[0] == LEFT
-    flight.step(COAST)
+    flight.step()
     assert flight.env.actions[0] == MAIN
 
 
@@ -102,19 +104,19 @@ def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_eng
     for turn in range(100):
         if turn % 10 == 0:
             flight.env.place(np.ones(1, bool), np.array([[0.0, 20.0, 0.0, 0.0, 0.0, 0.0]]))
-        assert flight.hand_over()
+        assert flight.chooser.hand_over()
         held = (LEFT, COAST, RIGHT)[turn % 3]
-        flight.step(held)
-        if flight.hand is StickHolder.NETWORK:
+        flight.step(KEYS[held])
+        if flight.chooser.hand is StickHolder.NETWORK:
             assert flight.env.actions[0] == MAIN
         else:
-            assert flight.asked == held
+            assert flight.choice.asked.action == held
             assert flight.env.actions[0] == (LEFT if held == LEFT else MAIN)
-    assert flight.hand is StickHolder.HUMAN
-    flight.help(0.0)
-    flight.step(COAST)
+    assert flight.chooser.hand is StickHolder.HUMAN
+    flight.chooser.help(0.0)
+    flight.step()
     assert flight.env.actions[0] == COAST
-    assert len(flight.recording.actions) == len(flight.recording.hands) == 101
+    assert flight.at == len(flight.recording.hands) == 101
 
 
 @pytest.mark.parametrize("pads", [1, 3])
@@ -124,36 +126,36 @@ def test_the_same_seed_and_keys_are_the_same_flight_and_the_recording_flies_it_a
         flight = shared(Falls(), 0.6, pads=pads)
         for step, held in enumerate(keys(3, 500)):
             if step in (100, 180):
-                flight.hand_over()
-            flight.step(held)
+                flight.chooser.hand_over()
+            flight.step(KEYS[held])
         flights.append(flight)
     first, second = flights
     assert first.recording == second.recording
     assert np.array_equal(first.poses.now, second.poses.now)
-    again = Flight(first.recording.seed, spawn=first.recording.spawn, pads=first.recording.pads)
-    for action in first.recording.actions:
-        again.step(action)
+    again = begun(first.recording.seed, spawn=first.recording.spawn, pads=first.recording.pads)
+    for push in first.recording.pushes:
+        again.step(push)
     assert np.array_equal(again.poses.now, first.poses.now)
     assert again.outcome is first.outcome
 
 
 def test_a_landing_on_any_of_three_pads_counts_and_read_outs_turn_to_it():
-    for number, pad in enumerate(Flight(4, pads=3).env.ground.pads):
-        flight = Flight(4, pads=3)
+    for number, pad in enumerate(begun(4, pads=3).env.ground.pads):
+        flight = begun(4, pads=3)
         flight.env.place(np.ones(1, bool), np.array([[pad.x, pad.top + 0.97, 0.0, 0.0, 0.0, 0.0]]))
         for _ in range(60):
-            flight.step(COAST)
+            flight.step()
         assert flight.outcome is Outcome.LANDED
         assert flight.env.target[0] == number
 
 
 def test_the_network_flies_to_the_nearest_pad_when_nothing_says_another():
-    flight = Flight(4, Wants(), pads=3)
+    flight = begun(4, Wants(), pads=3)
     pads = flight.env.ground.pads
     for number, pad in enumerate(pads):
         flight.env.place(np.ones(1, bool), np.array([[pad.x + 1.0, 12.0, 0.0, 0.0, 0.0, 0.0]]))
         for _ in range(DECISION_STEPS):
-            flight.step(COAST)
+            flight.step()
         assert flight.env.target[0] == number
 
 
@@ -240,7 +242,7 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
     driver = fly(open_game, context, help="guide")
     start_at(driver, 0, 5, 0, -1.0, 0, 0)
     down(driver, pygame.K_RIGHT)
-    driver.frames(3)
+    driver.frames(12)
     driver.app.context.settings.help = "off"
     up(driver, pygame.K_RIGHT)
     start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
@@ -274,7 +276,7 @@ def test_words_that_nobody_knows_in_the_settings_fly_as_usual(open_game: Open, c
     driver = opened(open_game, "Play")
     driver.key(pygame.K_UP)
     driver.frames(10)
-    assert not play(driver).flight.shared
+    assert not play(driver).flight.chooser.shared
     assert driver.app.canvas.zoom == 1.0
     driver.key(pygame.K_c)
     assert driver.top_name == "ChoicesScene"

@@ -17,7 +17,8 @@ from game.digits.cells import CellPicker
 from game.scenes.digits.answer import DigitBars
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.sums import figure
-from game.scenes.digits.why_not import WhyNotScene
+from game.scenes.digits.sums_tab import SumsTab
+from game.scenes.digits.why_not import WhyNotTab
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -40,14 +41,21 @@ def nine():
 @pytest.fixture
 def inside(open_game: Open, context: Context, modern, nine) -> Driver:
     save_settings(context)
-    driver = open_game(DigitInsideScene, modern, nine)
+    return opened(open_game, modern, nine)
+
+
+def opened(open_game: Open, classifier: DigitClassifier, image: np.ndarray) -> Driver:
+    """Look at the sums of a network."""
+    driver = open_game(DigitInsideScene, classifier, image)
+    driver.top.choose(driver.top.sums)
     driver.frames(3)
     return driver
 
 
-def scene(driver: Driver) -> DigitInsideScene:
+def scene(driver: Driver) -> SumsTab:
     assert isinstance(driver.top, DigitInsideScene)
-    return driver.top
+    assert driver.top.tab is driver.top.sums
+    return driver.top.sums
 
 
 def maps(driver: Driver) -> list[CellPicker]:
@@ -99,11 +107,12 @@ def test_a_filter_is_shown_with_the_ink_that_excites_it_most(inside: Driver, mod
     assert given == pytest.approx(search.most[channel], abs=1e-4)
 
 
-def test_questions_about_one_digit_do_not_pile_up(inside: Driver):
-    inside.press_on(texts.WHY_NOT_WORD)
-    assert inside.top_name == "WhyNotScene"
-    inside.press_on(texts.WHY_NOT_INSIDE)
-    assert inside.top_name == "DigitInsideScene"
+def test_three_tabs_do_not_pile_up(inside: Driver):
+    tabs = inside.choice(texts.SUMS_TITLE)
+    for index, tab in ((0, "why_not"), (2, "dreams"), (1, "sums"), (0, "why_not")):
+        inside.click(inside.choice(texts.SUMS_TITLE)._places[index].center)
+        assert inside.top.tab is getattr(inside.top, tab)
+    assert tabs.options[0] == texts.WHY_NOT_TITLE.format(digit=inside.top.why_not.asked)
     inside.key(pygame.K_ESCAPE)
     assert not inside.app.scenes.running, "it was the only scene"
 
@@ -136,12 +145,12 @@ def test_the_mouse_moves_the_window_and_lights_maps_and_patches(inside: Driver):
     inside.move(given.place(20, 3).center)
     assert walk.place[:2] == (20, 3)
     assert digit.window == (20, 3, 25, 8), "the patch of the pixel that is pointed at lights"
-    filters, given_maps = tiles(inside)
+    (filters,) = tiles(inside)
     inside.move(filters.place(1, 4).center)
     assert walk.place == (20, 3, filters.columns + 4)
-    assert given_maps.cell == filters.cell == (1, 4)
+    assert filters.cell == (1, 4)
     np.testing.assert_array_equal(np.sign(given.tiles[0]), np.sign(walk.stage.outputs[:, :, walk.place[2]]))
-    inside.click(scene(inside)._tabs._places[3].center)
+    inside.click(scene(inside)._stages._places[3].center)
     assert walk.number == 3
     read_maps = tiles(inside)[0]
     inside.move(read_maps.place(0, 5).center)
@@ -153,7 +162,7 @@ def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver):
     digit = maps(inside)[0]
     player.press("down", "up")  # from now on there is no mouse in use
     inside.form.focus(digit)
-    scene(inside)._look_at((10, 10, walk.place[2]))
+    scene(inside).look_at((10, 10, walk.place[2]))
     row, column, channel = walk.place
     player.press("confirm", "down", "down", "left")
     assert digit.typing
@@ -203,7 +212,7 @@ def strange(kind: str) -> DigitClassifier:
 @pytest.mark.parametrize("kind", ["deep", "plain", "normalised"])
 def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: Context, nine, kind: str):
     save_settings(context)
-    driver = open_game(DigitInsideScene, strange(kind), nine)
+    driver = opened(open_game, strange(kind), nine)
     walk = scene(driver).walk
     for _ in range(len(walk.stages)):
         driver.frames(1)
@@ -221,12 +230,11 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
 @pytest.fixture
 def why_not(open_game: Open, context: Context, modern, nine) -> Driver:
     save_settings(context)
-    return open_game(WhyNotScene, modern, nine)
+    return open_game(DigitInsideScene, modern, nine)
 
 
-def measured(driver: Driver) -> WhyNotScene:
-    top = driver.top
-    assert isinstance(top, WhyNotScene)
+def measured(driver: Driver) -> WhyNotTab:
+    top = driver.top.why_not
     while not top.contrast.done:
         driver.skip()
     driver.frames(2)
@@ -237,7 +245,7 @@ def measured(driver: Driver) -> WhyNotScene:
 def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, modern, nine, device: str):
     if device == "mouse":
         why_not.click(why_not.the(DigitBars).place(7).center)
-    while why_not.top.asked != 7:
+    while why_not.top.why_not.asked != 7:
         why_not.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
     top = measured(why_not)
     take = top.seen.take
@@ -280,8 +288,23 @@ def test_its_own_answer_has_its_score_beside_it_and_is_not_asked_about(why_not: 
 def test_a_network_that_cannot_be_asked_says_so(open_game: Open, context: Context, nine, monkeypatch):
     save_settings(context)
     words = words_written(monkeypatch)
-    driver = open_game(WhyNotScene, strange("normalised"), nine)
+    driver = open_game(DigitInsideScene, strange("normalised"), nine)
     driver.frames(3)
     driver.keys(pygame.K_3, pygame.K_r)
-    assert driver.top.contrast is None
+    assert driver.top.why_not.contrast is None
     assert texts.WHY_NOT_STRANGE.split(",")[0][:20] in " ".join(words)
+
+
+# Ten dreams
+
+
+def test_all_ten_dreams_go_on_together_and_begin_anew(open_game: Open, context: Context, modern, nine):
+    save_settings(context)
+    driver = open_game(DigitInsideScene, modern, nine)
+    dreams = driver.top.dreams
+    driver.top.choose(dreams)
+    driver.skip(10 * 40)
+    assert {dream.step for dream in dreams.dreams} == {40}
+    assert sum(dream.probabilities.argmax() == dream.digit for dream in dreams.dreams) >= 9
+    driver.key(pygame.K_r)
+    assert max(dream.step for dream in dreams.dreams) < 3

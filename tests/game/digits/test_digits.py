@@ -15,6 +15,7 @@ from tests.support.chores import biased_fix
 from tests.support.driver import Driver
 from tests.support.pen import draw, guess, strokes
 from tests.support.player import DEVICES, Player
+from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
 
@@ -33,13 +34,14 @@ def scene(driver: Driver) -> DigitsScene:
 def test_all_ten_digits_are_read_at_any_size_and_place(drawing: Driver, height, at, size):
     drawing.resize(size)
     read = {}
-    for chosen in ("modern", "classic"):
+    drawing.press_on("More")
+    for index, chosen in enumerate(("modern", "classic")):
+        drawing.choice("Classic").choose(index)
         read[chosen] = []
         for digit in range(10):
             draw(drawing, strokes(digit, 0, height, at))
             read[chosen].append(guess(drawing) == digit)
             drawing.key(pygame.K_c)
-        drawing.key(pygame.K_n)
     assert sum(read["modern"]) == 10
     assert sum(read["classic"]) >= 9
 
@@ -76,12 +78,11 @@ def test_what_is_no_digit_makes_it_unsure(drawing: Driver):
         drawing.key(pygame.K_c)
 
 
-def test_undo_and_clear_by_keys_words_and_pad(drawing: Driver):
+def test_undo_and_clear_by_keys_a_word_and_pad(drawing: Driver):
     pad = scene(drawing).pad
     draw(drawing, strokes(4))
     assert len(pad.strokes) == 2
-    drawing.key(pygame.K_z)
-    drawing.press_on("Undo")
+    drawing.keys(pygame.K_z, pygame.K_z)
     assert pad.empty
     draw(drawing, strokes(4))
     drawing.press_on("Clear")
@@ -92,17 +93,16 @@ def test_undo_and_clear_by_keys_words_and_pad(drawing: Driver):
     assert pad.empty
 
 
-def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing: Driver):
+def test_the_network_that_is_looked_into_is_chosen_under_more(drawing: Driver):
     draw(drawing, strokes(5))
+    drawing.press_on("More")
     seen = {}
-    for press in (lambda: drawing.key(pygame.K_n), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
-        press()
+    for _ in range(2):
+        tabs = drawing.choice("Classic")
+        drawing.click(tabs._places[1 - tabs.index].center)
         seen[scene(drawing).chosen] = scene(drawing).live.why
     assert list(seen) == ["classic", "modern"]
     assert not np.array_equal(seen["classic"], seen["modern"])
-    tabs = drawing.choice("Classic")
-    drawing.click(tabs._places[1].center)
-    assert scene(drawing).chosen == "classic"
 
 
 def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver, monkeypatch):
@@ -115,25 +115,47 @@ def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver
     assert np.array_equal(image, preprocess_strokes(digits.pad.strokes))
 
 
-def test_how_it_is_prepared_is_shown_in_five_pictures_when_asked(drawing: Driver):
-    digits = scene(drawing)
+def test_how_it_is_prepared_and_the_readers_are_shown_when_asked_and_from_then_on(drawing: Driver, context: Context):
     draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
-    before = np.array(pygame.surfarray.array3d(drawing.app.canvas.surface))
-    drawing.press_on(texts.DIGITS_SEES)
+    before = len(drawing.form.widgets)
+    drawing.press_on("More")
+    assert len(drawing.form.widgets) == before + 1
+    assert context.settings.is_open("digits")
+    drawing.press_on("Less")
+    assert len(drawing.form.widgets) == before
+
+
+def test_an_empty_pad_asks_no_why(drawing: Driver, written: list[str]):
     drawing.frames(2)
-    assert digits.prepared
-    assert not np.array_equal(pygame.surfarray.array3d(drawing.app.canvas.surface), before)
+    assert not [words for words in written if words.startswith("WHY")]
+    draw(drawing, strokes(7))
+    drawing.frames(10)
+    assert [words for words in written if words.startswith("WHY")]
+
+
+@pytest.mark.parametrize("size", ["normal", "largest"])
+def test_the_answer_stays_on_the_screen_beside_the_pad(open_game: Open, context: Context, size: str):
+    save_settings(context, text_size=size)
+    driver = open_game(DigitsScene)
+    driver.resize((800, 600))
+    draw(driver, strokes(7))
+    driver.frames(10)
+    digits, panel = scene(driver), scene(driver).panel
+    answer = panel.rows[0].box.top
+    assert panel.scrolled == 0
+    assert answer <= digits.pad.rect.top
+    assert digits._bars.box.left > digits.pad.rect.right
+    assert digits._bars.place(0).bottom < panel.box.bottom
 
 
 def test_words_lead_further_in_once_there_is_a_drawing_which_is_kept(drawing: Driver):
     digits = scene(drawing)
-    drawing.press_on("Why not …?")
+    drawing.press_on("Look inside")
     assert drawing.top is digits
     drawing.frames(2)
     assert drawing.said == texts.DIGITS_EMPTY
     draw(drawing, strokes(6))
-    for word, name in (("Look inside", "DigitInsideScene"), ("Why not …?", "WhyNotScene"),
-                       ("Train", "DigitTrainingScene"), ("Dream", "DreamScene")):  # fmt: skip
+    for word, name in (("Look inside", "DigitInsideScene"), ("Train", "DigitTrainingScene")):
         drawing.click(drawing.widget(word).box.center)
         assert drawing.top_name == name
         drawing.key(pygame.K_ESCAPE)
@@ -150,8 +172,6 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     driver = open_game(DigitsScene)
     assert scene(driver).chosen == "classic"
     assert "config.json" in scene(driver).live.reader.problems["modern"]
-    driver.key(pygame.K_n)
-    assert scene(driver).chosen == "classic"
     draw(driver, strokes(3))
     assert guess(driver) == 3
     driver.frames(3)
@@ -161,7 +181,7 @@ def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, conte
     context.models_dir = tmp_path
     driver = open_game(DigitsScene)
     draw(driver, strokes(3))
-    driver.keys(pygame.K_n, pygame.K_3)
+    driver.key(pygame.K_3)
     assert scene(driver).probabilities is None
     assert set(scene(driver).live.reader.problems) == {"modern", "classic"}
     assert driver.top_name == "DigitsScene"

@@ -47,7 +47,9 @@ def areas(driver: Driver) -> dict[str, pygame.FRect]:
 
 def test_everything_in_watch_is_explained(watching: Driver):
     watching.key(pygame.K_SPACE)
-    watching.keys(pygame.K_m)
+    watching.press_on(texts.MORE[0])
+    watching.frames(2)
+    watching.top._choose_map(1)
     watching.frames(12)
     named = areas(watching)
     inputs = [

@@ -11,16 +11,19 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision
 from ai.lander.environment import Outcome
+from ai.lander.push import KEYS
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.explain.q_values import SPAN
-from game.flight.flight import DECISION_STEPS, Flight
+from game.flight.networks import DECISION_STEPS
 from game.scenes.play.copilot_panel import CopilotPanel
-from game.scenes.watch.decision_panel import draw_decision
+from game.scenes.watch.decision_panel import write_decision
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.drawn import Drawn, Panel, number, read_panel
 from tests.support.driver import Driver
+from tests.support.flights import begun
 
 MODELS = Path(__file__).parents[3] / "models" / "lander"
 NETWORKS = ("modern", "classic")
@@ -93,7 +96,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
             sensed = watch.swarm.decision.observation[slot]
             assert sensed[1] > 0.5  # of the new start, not of where the last flight ended
         drawn.clear()
-        draw_decision(canvas, watch.decision)
+        write_decision(Cursor(980, 100, 244, canvas=canvas), watch.decision)
         panel = read_panel(drawn)
         points = agent.q_values(sensed)[0] / agent.config.reward_scale
         if env.outcome[slot] == Outcome.FLYING:
@@ -112,50 +115,50 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
 def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
     agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch
 ):
-    flight, drawn = Flight(5, agent), Drawn(monkeypatch)
+    flight, drawn = begun(5, agent), Drawn(monkeypatch)
     copilot_panel = CopilotPanel()
-    flight.hand_over()
+    flight.chooser.hand_over()
     while True:
-        if len(flight.recording.actions) % DECISION_STEPS == 0:
+        if flight.at % DECISION_STEPS == 0:
             sensed = flight.env.observe()
-        flight.step(0)
+        flight.step()
         if flight.over:
             break
         copilot_panel.follow(flight)
         drawn.clear()
         copilot_panel.draw(canvas, 0.0)
         points = agent.q_values(sensed)[0] / agent.config.reward_scale
-        check(read_panel(drawn), points, flight.recording.actions[-1])
+        check(read_panel(drawn), points, flight.recording.pushes[-1].action)
         said = any("is kept" in word for word in drawn.words)
-        assert said or points.max() - points[flight.recording.actions[-1]] < TINY
-    assert len(flight.recording.actions) > 200
+        assert said or points.max() - points[flight.recording.pushes[-1].action] < TINY
+    assert flight.at > 200
 
 
 @pytest.mark.parametrize("pads", [1, 3])
 def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
     agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, pads: int
 ):
-    flight, drawn = Flight(5, agent, pads=pads), Drawn(monkeypatch)
+    flight, drawn = begun(5, agent, pads=pads), Drawn(monkeypatch)
     copilot_panel = CopilotPanel()
-    flight.help(0.5)
+    flight.chooser.help(0.5)
     rng = np.random.default_rng(1)
     titles, held = set(), 0
-    while len(flight.recording.actions) < 500:
-        if len(flight.recording.actions) % 7 == 0:
+    while flight.at < 500:
+        if flight.at % 7 == 0:
             held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
-        flight.step(held)
+        flight.step(KEYS[held])
         copilot_panel.follow(flight)
         if flight.over:
             break
-        decision = flight.decision
+        decision = flight.choice.decision
         assert decision is not None
         drawn.clear()
         copilot_panel.draw(canvas, 0.5)
-        pad, flown = int(flight.env.target[0]), flight.recording.actions[-1]
+        pad, flown = int(flight.env.target[0]), flight.recording.pushes[-1].action
         titles.add(copilot_panel.why[0])
         points = agent.q_values(decision.observation[0, pad])[0] / agent.config.reward_scale
         check(read_panel(drawn), points, flown)
-        read_why(copilot_panel.why, overridden=flight.overridden)
+        read_why(copilot_panel.why, overridden=flight.choice.overridden)
     assert len(titles) > 2
 
 

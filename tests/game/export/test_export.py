@@ -34,7 +34,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record: Record, small: None):
-    length = len(record.recording.actions)
+    length = len(record.recording.pushes)
     before, after, end = frames(ReplayScene, record, [0, 20, length])
     assert before.shape == after.shape == (90, 160, 3)
     changed = (before != after).any(axis=2)
@@ -113,6 +113,8 @@ def test_a_full_disk_is_an_error_and_leaves_what_was_there(record: Record, small
 def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_path: Path) -> tuple[Driver, ReplayScene]:
     monkeypatch.setattr(module, "films_dir", lambda: tmp_path / "pictures")
     driver = open_game(ReplayScene, record)
+    driver.frames(2)
+    driver.press_on(texts.MORE[0])
     driver.frames(2)
     return driver, driver.top
 

@@ -2,26 +2,30 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pygame
 import pytest
 
-from ai.flights.recording import STEPS, UNHURRIED, WIDER, Easing, full
+from ai.flights.recording import UNHURRIED, WIDER, Easing
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS, STEPS, Push
 from game.core import texts
 from game.flight import flight_file
+from game.flight.choosers import Shared
 from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import Records, best, best_alone, describe
-from game.flight.replay import ReplayedFlight
+from game.flight.replay import replayed
 from game.input.analogue import pushed
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
+from tests.support.flights import begun
 from tests.support.one_switch import one_switch
 
 
@@ -37,9 +41,8 @@ def analogue(flight: Flight, most: int = 500) -> Flight:
         if flight.over:
             break
         wish = int(pilot.act(flight.observation)[0])
-        main, side = full(wish)
-        stick = pushed(main / STEPS * rng.uniform(0.5, 1.0), side / STEPS * rng.uniform(0.1, 1.0))
-        flight.step(*stick)
+        main, side = KEYS[wish].shares
+        flight.step(pushed(main * rng.uniform(0.5, 1.0), side * rng.uniform(0.1, 1.0), Push()))
     return flight
 
 
@@ -48,68 +51,51 @@ def analogue(flight: Flight, most: int = 500) -> Flight:
     [(1, "", Easing()), (3, "", Easing(wider_pads=True)), (1, "wind", Easing(wider_pads=True, untimed=True))],
 )
 def test_an_analogue_flight_is_flown_again_bit_for_bit(pads: int, mission: str, easing: Easing):
-    flight = analogue(Flight(3, pads=pads, mission=mission, easing=easing))
-    assert len(set(flight.recording.shares.values())) > 20
+    flight = analogue(begun(3, pads=pads, mission=mission, easing=easing))
+    assert len(set(flight.recording.pushes)) > 20
     record = flight_file.from_text(flight_file.to_text(record_of(flight)))
     assert record.recording == flight.recording
-    again = ReplayedFlight(record.recording)
-    while not again.over and again.at < len(record.recording.actions):
-        again.step(0)
+    again = replayed(record.recording)
+    while not again.over and again.at < flight.at:
+        again.step()
     assert again.poses.now.tobytes() == flight.poses.now.tobytes()
     assert again.env.fuel == flight.env.fuel
     assert again.recording == flight.recording
 
 
-def test_whole_thrust_leaves_no_trace_in_the_recording():
-    flight, plain = Flight(3), Flight(3)
-    for action in [3, 4, 0, 5, 2, 1] * 10:
-        flight.step(*pushed(*(share / STEPS for share in full(action))))
-        plain.step(action)
-    assert flight.recording == plain.recording
-    assert flight.recording.shares == {}
+def test_a_stick_that_is_pushed_to_its_ends_is_a_key():
+    for key in KEYS:
+        assert pushed(*key.shares, Push()) == key
 
 
-def test_a_co_pilot_that_steps_in_flies_its_own_action_in_full(monkeypatch: pytest.MonkeyPatch):
-    flight = Flight(3)
-    monkeypatch.setattr(Flight, "shared", property(lambda _: True))
-    for own, flown in ((4, 4), (4, 3)):
-        monkeypatch.setattr(flight, "_ask_copilot", lambda flown=flown: flown)
-        flight.step(own, (9, -5))
-        step = len(flight.recording.actions) - 1
-        assert flight.env.shares.tolist() == ([[9 / STEPS, -5 / STEPS]] if own == flown else [[1.0, 0.0]])
-        assert (step in flight.recording.shares) is (own == flown)
-
-
-def test_a_file_of_the_version_before_is_read_unchanged():
-    flight = Flight(3)
-    for _ in range(60):
-        flight.step(3)
-    text = (
-        flight_file.to_text(record_of(flight)).replace('"version": 5', '"version": 4').replace(' "shares": "",\n', "")
-    )
-    begin = text.index(' "easing"')
-    old = text[:begin] + text[text.index("},", begin) + 3 :]
-    assert "easing" not in old
-    assert flight_file.from_text(old).recording == flight.recording
+def test_a_co_pilot_that_steps_in_flies_its_own_action_in_full():
+    for flown in (4, 3):
+        flight = begun(3)
+        decision = SimpleNamespace(pilot=[4], action=[flown], likely=[0.0])
+        copilot = SimpleNamespace(agent=ScriptedPilot(), decide=lambda *_, decision=decision: decision)
+        flight.chooser = Shared(copilot, 4)  # type: ignore[assignment]
+        flight.step(Push(9, -9))
+        assert flight.env.shares.tolist() == ([[9 / STEPS, -9 / STEPS]] if flown == 4 else [[1.0, 0.0]])
+        assert flight.recording.pushes == [Push(9, -9) if flown == 4 else KEYS[3]]
 
 
 def test_wider_pads_are_half_as_wide_again_and_nothing_else_moves():
     for pads in (1, 3):
-        plain, wide = Flight(3, pads=pads), Flight(3, pads=pads, easing=Easing(wider_pads=True))
+        plain, wide = begun(3, pads=pads), begun(3, pads=pads, easing=Easing(wider_pads=True))
         assert wide.env.ground.widths == pytest.approx(WIDER * plain.env.ground.widths)
         assert np.array_equal(wide.env.ground.middles, plain.env.ground.middles)
         assert np.array_equal(wide.env.position, plain.env.position)
     for name, mission in MISSIONS.items():
-        env = Flight(0, mission=name, easing=Easing(True, True)).env
+        env = begun(0, mission=name, easing=Easing(True, True)).env
         assert env.ground.widths[0] == pytest.approx(WIDER * mission.pad.width), name
         assert (env.limits.time, env.limits.touch_speed) == (UNHURRIED, mission.limits.touch_speed), name
 
 
 def test_without_a_time_limit_a_flight_outlasts_it_and_can_be_read_back():
-    flight = Flight(3, easing=Easing(untimed=True))
+    flight = begun(3, easing=Easing(untimed=True))
     pilot = ScriptedPilot()
     for _ in range(60 * 40):  # hovering
-        flight.step(3 * bool(flight.env.velocity[0, 1] < 0) + int(pilot.act(flight.observation)[0]) % 3)
+        flight.step(KEYS[3 * bool(flight.env.velocity[0, 1] < 0) + int(pilot.act(flight.observation)[0]) % 3])
     assert flight.outcome is Outcome.FLYING
     assert flight.env.time[0] > 39
     record = flight_file.from_text(flight_file.to_text(record_of(flight)))
@@ -119,17 +105,17 @@ def test_without_a_time_limit_a_flight_outlasts_it_and_can_be_read_back():
 def test_a_slow_hand_with_one_switch_lands():
     """A fifth of a second late, five decisions a second, and nothing but the engine: the jets steer by themselves."""
     for seed in range(6):
-        assert one_switch(Flight(seed, easing=Easing(wider_pads=seed % 2 == 0))).outcome is Outcome.LANDED, seed
+        assert one_switch(begun(seed, easing=Easing(wider_pads=seed % 2 == 0))).outcome is Outcome.LANDED, seed
 
 
 Open = Callable[..., Driver]
 
 
 def test_only_flights_alone_and_from_anywhere_are_among_the_best():
-    flight = Flight(3, ScriptedPilot())
-    flight.hand_over()
+    flight = begun(3, ScriptedPilot())
+    flight.chooser.hand_over()
     while not flight.over:
-        flight.step(0)
+        flight.step()
     entry = replace(describe(flight, 1.0), alone=True, file="a.json", score=90)
     slow = replace(entry, alone=False, barred="assists", score=99)
     assert best([slow, entry]) == [entry]
@@ -155,7 +141,7 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(ope
     driver.frames(2)
     driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0)
     driver.frames(59)
-    assert len(play.flight.recording.actions) == pytest.approx(30, abs=1)
+    assert play.flight.at == pytest.approx(30, abs=1)
     driver.app.context.settings.pace = 1.0  # the slowest counts
     driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0)
     while not play.ending.card:
@@ -164,7 +150,7 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(ope
     assert (entry.pace, entry.alone, entry.medal) == (0.5, False, 0)
     assert entry.bar == "assists"
     assert texts.ASSIST_HALF_SPEED in play.ending.card.assists
-    again = ReplayedFlight(Records(context.user_dir).read(entry.file).recording)
+    again = replayed(Records(context.user_dir).read(entry.file).recording)
     while not again.over:
-        again.step(0)
+        again.step()
     assert np.array_equal(again.poses.now, play.flight.poses.now)

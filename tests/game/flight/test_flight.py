@@ -7,15 +7,18 @@ from ai.agent.agent import DeepQAgent
 from ai.environment import Floats, Ints
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, PARAMS, Cause, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS
 from game.core import texts
 from game.core.clock import TimeScale
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS, Flight, StickHolder
+from game.flight.flight import Flight, StickHolder
 from game.flight.forecast import Forecast, coast_path
 from game.flight.logbook import describe
+from game.flight.networks import DECISION_STEPS
 from game.flight.outcomes import outcome_card, qualities
 from game.flight.swarm import Swarm
 from game.scenes.logbook.scene import entry_row
+from tests.support.flights import begun
 from tests.support.landers import STAND, put
 
 
@@ -32,40 +35,36 @@ class Counting:
 
 def test_a_network_decides_every_four_steps_and_at_once_when_it_takes_over():
     network = Counting()
-    flight = Flight(1, network)
-    flight.step(0)
-    assert flight.hand_over()
+    flight = begun(1, network)
+    flight.step()
+    assert flight.chooser.hand_over()
     for _ in range(2 * DECISION_STEPS):
-        flight.step(1)
+        flight.step(KEYS[1])
         assert flight.env.actions[0] == 3
     assert network.asked == 2
-    flight.hand_over()
-    flight.step(2)
+    flight.chooser.hand_over()
+    flight.step(KEYS[2])
     assert flight.env.actions[0] == 2
     assert flight.share == pytest.approx(2 / 10)
-    flight.hand_over()
-    flight.step(0)
+    flight.chooser.hand_over()
+    flight.step()
     assert network.asked == 3
 
 
-def test_no_network_and_no_flight_cannot_be_handed_over():
-    flight = Flight(1)
-    assert not flight.hand_over()
-    assert flight.hand is StickHolder.HUMAN
-    flight = Flight(1, Counting())
-    while not flight.over:
-        flight.step(0)
-    assert not flight.hand_over()
+def test_without_a_network_nothing_can_be_handed_over():
+    flight = begun(1)
+    assert not flight.chooser.hand_over()
+    assert flight.chooser.hand is StickHolder.HUMAN
 
 
 def test_the_path_ahead_is_the_way_it_then_goes_in_the_wind_too():
     for mission, points in (("", 15), ("wind", 9)):
-        flight = Flight(2, mission=mission)
+        flight = begun(2, mission=mission)
         path = coast_path(flight.env)
         assert len(path) > points
         for place in path[1:-1][:points]:
             for _ in range(10):
-                flight.step(0)
+                flight.step()
             assert np.abs(place - flight.env.position[0]).max() < 0.03, mission
 
 
@@ -88,10 +87,10 @@ SLID = "Slid across the ground at {1:.1f} m/s; 2.0 is the limit."
 
 def fallen(*start: float, action: int = 0) -> Flight:
     """A flight from a state to its end."""
-    flight = Flight(1)
+    flight = begun(1)
     put(flight.env, start)
     while not flight.over:
-        flight.step(action)
+        flight.step(KEYS[action])
     return flight
 
 
@@ -136,9 +135,9 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
         ((0, 28.9, 0, 6, 0, 0), "Left the area at the top, 26 m up."),
     ):
         assert outcome_card(fallen(*start).env, 1.0).reason == reason
-    flight = Flight(1)
+    flight = begun(1)
     flight.env.steps[:] = round(LIMITS.time * 60) - 1
-    flight.step(0)
+    flight.step()
     assert outcome_card(flight.env, 1.0).reason.startswith("Time ran out")
 
 
@@ -210,15 +209,15 @@ def test_whatever_lies_in_the_players_folder_is_named_and_never_raises(tmp_path:
 
 
 def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
-    alone, watched = Flight(7, ScriptedPilot()), Flight(7, ScriptedPilot())
+    alone, watched = begun(7, ScriptedPilot()), begun(7, ScriptedPilot())
     forecast = Forecast(ScriptedPilot())
     for flight in (alone, watched):
-        flight.hand_over()
+        flight.chooser.hand_over()
     while not alone.over:
-        alone.step(0)
-        watched.step(0)
+        alone.step()
+        watched.step()
         forecast.follow(watched.env)
-        if len(alone.recording.actions) == 120:
+        if alone.at == 120:
             assert abs(forecast.path[-1, 0] - watched.env.pad[0, 0]) < watched.env.pad_width[0] / 2
             assert forecast.path[-1, 1] - watched.env.pad[0, 1] - PARAMS.stand < 0.5
     assert watched.recording == alone.recording
@@ -226,13 +225,13 @@ def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
 
 
 def test_a_forecast_is_flown_under_the_gravity_of_the_flight():
-    flight, forecast = Flight(7, ScriptedPilot()), Forecast(ScriptedPilot())
+    flight, forecast = begun(7, ScriptedPilot()), Forecast(ScriptedPilot())
     flight.env.gravity *= 1.4
     while not len(forecast.path):
         forecast.follow(flight.env)
-    flight.hand_over()
+    flight.chooser.hand_over()
     for _ in range(10 * DECISION_STEPS):
-        flight.step(0)
+        flight.step()
     assert np.array_equal(forecast.path[10], flight.poses.now[0, :2])
 
 
@@ -249,10 +248,10 @@ class TrainedAtSeven(ScriptedPilot):
 
 def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
     pilot = TrainedAtSeven()
-    flight = Flight(3, pilot)
-    flight.hand_over()
+    flight = begun(3, pilot)
+    flight.chooser.hand_over()
     for _ in range(70):
-        flight.step(0)
+        flight.step()
     assert pilot.asked == 10
     swarm = Swarm(1, 3, pilot := TrainedAtSeven())
     for _ in range(70):

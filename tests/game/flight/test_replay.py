@@ -9,17 +9,18 @@ import pytest
 from ai.flights.recording import Easing
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS, Push
 from game.core import texts
 from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.flight.replay import FlightReplay, ReplayedFlight
+from game.flight.replay import FlightReplay, replayed
 from game.input.analogue import pushed
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import NOON, fly_out, kept, scripted
+from tests.support.flights import NOON, begun, fly_out, kept, scripted
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
@@ -37,9 +38,9 @@ def state(flight_replay: FlightReplay) -> tuple:
 
 
 def analogue() -> Flight:
-    flight, rng = Flight(3, pads=3, easing=Easing(wider_pads=True)), np.random.default_rng(1)
+    flight, rng = begun(3, pads=3, easing=Easing(wider_pads=True)), np.random.default_rng(1)
     for _ in range(200):
-        flight.step(*pushed(rng.uniform(0.3, 1.0), rng.uniform(-0.6, 0.6)))
+        flight.step(pushed(rng.uniform(0.3, 1.0), rng.uniform(-0.6, 0.6), Push()))
     return flight
 
 
@@ -63,18 +64,18 @@ def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(context: Conte
 
 
 def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
-    flight, pilot = Flight(3, pads=3), ScriptedPilot()
+    flight, pilot = begun(3, pads=3), ScriptedPilot()
     first = int(flight.env.target[0])
-    flown, replayed = [], []
+    flown, shown = [], []
     while not flight.over:
-        flight.step(int(pilot.act(flight.env.observe((first + 1) % 3))[0]))
+        flight.step(KEYS[int(pilot.act(flight.env.observe((first + 1) % 3))[0])])
         flown.append((int(flight.env.target[0]), float(flight.env.altitude[0])))
     assert flown[0][0] == first != flown[-1][0]
-    again = ReplayedFlight(flight.recording)
+    again = replayed(flight.recording)
     while not again.over:
-        again.step(0)
-        replayed.append((int(again.env.target[0]), float(again.env.altitude[0])))
-    assert replayed == flown
+        again.step()
+        shown.append((int(again.env.target[0]), float(again.env.altitude[0])))
+    assert shown == flown
 
 
 def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flight(record: Record):
@@ -163,7 +164,7 @@ def test_it_plays_stops_steps_winds_slows_and_begins_anew(replay: Driver):
 @pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
 def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
     context.settings_file.save(replace(context.settings, reduced_motion=reduced))
-    driver = open_game(ReplayScene, kept(context, fly_out(Flight(5))))
+    driver = open_game(ReplayScene, kept(context, fly_out(begun(5))))
     driver.frames(2)
     driver.keys(*[pygame.K_PLUS] * faster)
     driver.wait(lambda: scene(driver).ended)
@@ -182,9 +183,9 @@ def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, redu
 @pytest.fixture
 def book(open_game: Open, context: Context) -> Driver:
     records = Records(context.user_dir)
-    fall, landing = Flight(5), scripted()
+    fall, landing = begun(5), scripted()
     while not fall.over:
-        fall.step(0)
+        fall.step()
     records.keep(landing, NOON, alone=True)
     records.keep(fall, NOON + 60, alone=True)
     driver = open_game(LogbookScene)

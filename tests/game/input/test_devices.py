@@ -19,7 +19,7 @@ from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from tests.game.input.test_pads import VirtualPads, pads  # noqa: F401
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import actions, play
 from tests.support.screens import save_settings
 
 Open = Callable[..., Driver]
@@ -39,7 +39,7 @@ def test_an_axis_that_rests_at_its_end_is_heard_once_it_was_moved_away_and_back(
     driver.axis(axis, end)
     driver.frames(5)
     assert not play(driver).waiting
-    assert any(scene.flight.recording.actions)
+    assert any(actions(scene.flight))
 
 
 def test_a_device_without_a_mapping_is_told(game: Driver, pads: VirtualPads):  # noqa: F811

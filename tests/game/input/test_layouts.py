@@ -15,7 +15,7 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import actions, play
 
 Open = Callable[..., Driver]
 US = "`1234567890-=qwertyuiop[]\\asdfghjkl;'zxcvbnm,./"
@@ -65,7 +65,7 @@ def test_flying_goes_by_place_and_letters_of_commands_by_what_is_written(
     scene = play(driver)
     press(driver, layout, "w")
     driver.frames(3)
-    assert scene.flight.recording.actions[0] >= 3, "the key of the American W fires"
+    assert actions(scene.flight)[0] >= 3, "the key of the American W fires"
     flown = scene.flight
     press(driver, layout, place_of(layout, "r"))
     assert scene.flight is not flown, "R tries again"
@@ -106,7 +106,7 @@ def test_with_ctrl_alt_or_the_system_key_nothing_is_a_command(open_game: Open, m
         assert driver.top is scene, pygame.key.name(key)
         assert scene.flight is flight, pygame.key.name(key)
     assert scene.waiting
-    assert flight.hand is StickHolder.HUMAN
+    assert flight.chooser.hand is StickHolder.HUMAN
     settings = driver.app.context.settings
     assert (settings.help, settings.show_thinking, settings.muted) == ("off", False, False)
     driver = open_game(MenuScene)

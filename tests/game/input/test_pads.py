@@ -8,16 +8,16 @@ from pathlib import Path
 import pygame
 import pytest
 
-from ai.flights.recording import STEPS
+from ai.lander.push import KEYS, STEPS, Push
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.glyphs import SIGN
-from game.input.analogue import Stick
 from game.input.controls import Command, Controls
 from game.scenes.play.flight_controls import FINE, FlightControls
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
+from tests.support.flights import actions
 from tests.support.screens import save_settings
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15
@@ -87,8 +87,8 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
     pads.press(pygame.CONTROLLER_BUTTON_A)
     pads.push(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
     game.frames(10)
-    assert play.flight.recording.actions[-1] == 3
-    flown = len(play.flight.recording.actions)
+    assert play.flight.recording.pushes[-1].action == 3
+    flown = play.flight.at
     pads.pull_out_all()
     game.frames(3)
     assert "PauseScene" in game.top_name
@@ -96,13 +96,13 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
     assert not SIGN.search(game.app.context.controls.word(Command.CONFIRM))
     game.key(pygame.K_ESCAPE)
     game.frames(10)
-    assert set(play.flight.recording.actions[flown + 2 :]) <= {0}  # no engine sticks
+    assert set(actions(play.flight)[flown + 2 :]) <= {0}  # no engine sticks
     assert play.waiting  # it hangs until it is touched
     pads.plug_in()
     game.frames(3)
     pads.press(pygame.CONTROLLER_BUTTON_A)
     game.frames(3)
-    assert play.flight.recording.actions[-1] == 3
+    assert play.flight.recording.pushes[-1].action == 3
     assert SIGN.search(game.app.context.controls.word(Command.CONFIRM))
 
 
@@ -131,15 +131,15 @@ def push(controls: Controls, axis: int, value: int, pad: int = 0) -> None:
     controls.process(pygame.Event(pygame.CONTROLLERAXISMOTION, instance_id=pad, axis=axis, value=value))
 
 
-def stick(controls: Controls, **settings: bool) -> Stick:
+def stick(controls: Controls, **settings: bool) -> Push:
     return FlightControls(controls, Settings(**settings)).read(640.0)
 
 
 def test_a_pad_at_rest_asks_for_nothing(controls: Controls):
-    assert stick(controls) == Stick()
+    assert stick(controls) == Push()
     for axis, value in ((TURN, 4000), (RISE, -4000), (PULL, 900), (PULL, 0), (TURN, -4500)):
         push(controls, axis, value)
-        assert stick(controls) == Stick(), (axis, value)
+        assert stick(controls) == Push(), (axis, value)
 
 
 @pytest.mark.parametrize("axis", [PULL, RISE])
@@ -148,8 +148,7 @@ def test_a_throttle_gives_more_the_farther_it_goes_and_all_before_its_end(contro
     thrusts = []
     for value in range(0, 32768, 1024):
         push(controls, axis, way * value)
-        action, shares = stick(controls)
-        thrusts.append(shares[0] if shares else STEPS * (action == 3))
+        thrusts.append(stick(controls).main)
     assert thrusts == sorted(thrusts)
     assert set(thrusts) == set(range(STEPS + 1))
     assert thrusts[-2:] == [STEPS, STEPS]
@@ -160,69 +159,67 @@ def test_the_stick_turns_to_both_sides_alike_and_finely_near_its_rest(controls: 
         sides = []
         for way in (-1, 1):
             push(controls, TURN, way * value)
-            action, shares = stick(controls)
-            assert action == (1 if way < 0 else 2)
-            sides.append(shares[1] if shares else way * STEPS)
+            asked = stick(controls)
+            assert asked.action == (1 if way < 0 else 2)
+            sides.append(asked.side)
         assert sides[0] == -sides[1]
     push(controls, TURN, 16000)
-    _, shares = stick(controls)
-    assert shares
-    assert shares[1] < STEPS / 3  # the curve: half of the way is less than a third
+    assert 0 < stick(controls).side < STEPS / 3  # the curve: half of the way is less than a third
 
 
 def test_a_hand_that_trembles_does_not_move_the_throttle_but_both_ends_are_reached(controls: Controls):
     reader = FlightControls(controls, Settings())
 
-    def at(value: int) -> Stick:
+    def at(value: int) -> Push:
         push(controls, PULL, value)
         return reader.read(640.0)
 
     rest = at(16384)
-    assert rest.shares == (8, 0)
+    assert rest == Push(8, 0)
     assert at(16384 + 1100) == at(16384 - 1100) == rest  # a little more than half of a step
-    assert at(16384 + 2200).shares == (9, 0)
-    assert at(32767) == Stick(3)
-    assert at(0) == Stick()
+    assert at(16384 + 2200) == Push(9, 0)
+    assert at(32767) == KEYS[3]
+    assert at(0) == Push()
 
 
 def test_a_trigger_that_rests_below_zero_is_learnt_from_its_first_value(controls: Controls):
     push(controls, PULL, -32767)
-    assert stick(controls) == Stick()
+    assert stick(controls) == Push()
     push(controls, PULL, 0)  # half of its way
-    assert stick(controls).shares == (8, 0)
+    assert stick(controls) == (8, 0)
     push(controls, PULL, 32767)
-    assert stick(controls) == Stick(3)
+    assert stick(controls) == KEYS[3]
     push(controls, PULL, -32000)
-    assert stick(controls) == Stick()
+    assert stick(controls) == Push()
     push(controls, PULL, 16384, pad=1)  # another pad, whose trigger rests at 0
-    assert stick(controls).shares == (8, 0)
+    assert stick(controls) == (8, 0)
 
 
 def test_without_analogue_it_is_all_or_nothing(controls: Controls):
     push(controls, PULL, 12000)
     push(controls, TURN, -12000)
-    assert stick(controls).shares is not None
-    assert stick(controls, analogue=False) == Stick(4)
+    assert stick(controls) not in KEYS
+    assert stick(controls, analogue=False) == KEYS[4]
 
 
 def test_fine_turning_takes_a_part_of_the_jets_and_nothing_of_the_engine(controls: Controls):
     for key in (pygame.K_LEFT, pygame.K_UP):
         controls.process(pygame.Event(pygame.KEYDOWN, key=key, mod=0))
-    assert stick(controls) == Stick(4)
+    assert stick(controls) == KEYS[4]
     controls.process(pygame.Event(pygame.KEYDOWN, key=pygame.K_LSHIFT, mod=0))
-    assert stick(controls) == Stick(3, (STEPS, -round(FINE * STEPS)))
+    assert stick(controls) == Push(STEPS, -round(FINE * STEPS))
     controls.process(pygame.Event(pygame.KEYUP, key=pygame.K_LSHIFT, mod=0))
     push(controls, PULL_LEFT, 30000)  # the same with a pad
-    assert stick(controls).shares == (STEPS, -round(FINE * STEPS))
+    assert stick(controls) == (STEPS, -round(FINE * STEPS))
 
 
 def test_the_mouse_turns_finely_while_its_middle_button_is_held(controls: Controls):
     hands = FlightControls(controls, Settings())
     for button in (3, 2):
         hands.take(pygame.Event(pygame.MOUSEBUTTONDOWN, pos=(900, 300), button=button))
-    assert hands.read(640.0) == Stick(2, (0, round(FINE * STEPS)))
+    assert hands.read(640.0) == Push(0, round(FINE * STEPS))
     hands.take(pygame.Event(pygame.MOUSEBUTTONUP, pos=(900, 300), button=2))
-    assert hands.read(640.0) == Stick(2)
+    assert hands.read(640.0) == KEYS[2]
 
 
 @pytest.mark.parametrize("device", ["trigger", "mouse"])
@@ -244,7 +241,7 @@ def test_a_press_switches_the_engine_on_and_the_next_one_off(controls: Controls,
     press(True)
     hands.read(640.0)
     hands.begin()  # another flight
-    assert hands.read(640.0) == Stick()
+    assert hands.read(640.0) == Push()
 
 
 def test_a_real_pad_flies_with_shares_that_the_flame_follows_and_is_pulled_out(
@@ -258,7 +255,7 @@ def test_a_real_pad_flies_with_shares_that_the_flame_follows_and_is_pulled_out(
     pads.push(TURN, 20000)
     pads.push(RISE, -20000)
     game.frames(40)
-    main, side = play.flight.recording.shares[len(play.flight.recording.actions) - 1]
+    main, side = play.flight.recording.pushes[-1]
     assert 0 < main < STEPS
     assert 0 < side < STEPS
     thrust = play.flown.scenery.stage.thrust[0]

@@ -27,7 +27,7 @@ EARTH = GRAVITIES[1]
 @pytest.fixture
 def gallery(open_game: Open) -> Driver:
     driver = open_game(PhysicsScene)
-    driver.press_on(texts.PHYSICS_MORE[0])
+    driver.press_on(texts.MORE[0])
     return driver
 
 
@@ -45,7 +45,7 @@ def seen(driver: Driver, body) -> tuple[float, float]:
 def shows(driver: Driver, colour: tuple[int, int, int], area: pygame.typing.RectLike) -> int:
     """How many pixels of an area, in points, have a colour."""
     driver.app.draw()
-    box = scene(driver).laid_on(driver.app.canvas).rect(*pygame.FRect(area))
+    box = driver.app.canvas.reading.rect(*pygame.FRect(area))
     pixels = pygame.surfarray.array3d(driver.app.canvas.surface)[box.left : box.right, box.top : box.bottom]
     return int((np.abs(pixels.astype(int) - colour).max(axis=2) < 12).sum())
 

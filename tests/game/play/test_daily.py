@@ -10,6 +10,7 @@ import pygame
 import pytest
 
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS
 from game.core import texts
 from game.core.scene import Scene
 from game.flight.days import FILE_NAME, Attempt, Days
@@ -21,7 +22,7 @@ from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
-from tests.support.flights import kept, play
+from tests.support.flights import actions, begun, kept, play
 
 Open = Callable[..., Driver]
 TODAY = date.today()
@@ -38,9 +39,9 @@ def today(context: Context) -> Scene:
 
 def flown(day: date) -> Flight:
     """A flight of a day's start by the scripted pilot, as if by hand."""
-    flight, pilot = Flight(day.toordinal(), pads=3), ScriptedPilot()
+    flight, pilot = begun(day.toordinal(), pads=3), ScriptedPilot()
     while not flight.over:
-        flight.step(int(pilot.act(flight.observation)[0]))
+        flight.step(KEYS[int(pilot.act(flight.observation)[0])])
     return flight
 
 
@@ -129,7 +130,7 @@ def test_the_page_of_play_says_how_today_and_yesterday_went_and_the_ghost_is_the
     scene = play(driver)
     assert scene.credit.bar == "day_again"
     assert scene.flight.recording.seed == TODAY.toordinal()
-    assert scene.flown.ghost.flight.recording.actions == []
+    assert actions(scene.flown.ghost.flight) == []
     assert Days(context.user_dir).best_flight(YESTERDAY).recording.seed == YESTERDAY.toordinal()
     assert Days(context.user_dir).best_flight(TODAY + timedelta(days=1)) is None, "which is of another day"
 

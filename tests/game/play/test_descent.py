@@ -18,7 +18,7 @@ from game.ui.context import Context
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.descent import stand_on
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import actions, play
 
 Open = Callable[..., Driver]
 
@@ -36,10 +36,10 @@ def descent(driver: Driver) -> Descent:
 
 def land(driver: Driver, pad: int = 0) -> None:
     """Stand on a pad until the next leg hangs there."""
-    scene, number = play(driver), descent(driver).start.number
+    scene, number = play(driver), descent(driver).begins.number
     scene.flown.waiting = False
     stand_on(scene.flight.env, pad)
-    while descent(driver).start.number == number:
+    while descent(driver).begins.number == number:
         driver.skip()
 
 
@@ -56,8 +56,8 @@ def test_a_landing_leads_to_the_next_leg_which_hangs_on_its_feet_with_what_is_in
     land(game)
     scene = play(game)
     assert scene.waiting
-    assert descent(game).start == scene.flight.recording.leg
-    assert (descent(game).start.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
+    assert descent(game).begins == scene.flight.recording.leg
+    assert (descent(game).begins.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
     place = scene.flight.env.position.copy()
     game.frames(10)
     assert (scene.flight.env.position == place).all()
@@ -91,7 +91,7 @@ def test_every_leg_can_be_watched_again_to_the_bit(game: Driver, context: Contex
         game.skip(10)
     records = Records(context.user_dir)
     record = records.read(records.entries()[-1].file)
-    assert record.recording.leg == LegStart(2, descent(game).start.tank)
+    assert record.recording.leg == LegStart(2, descent(game).begins.tank)
     again = FlightReplay(record)
     again.scout(10_000)
     assert again.complete
@@ -107,7 +107,7 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     assert card.advice == texts.DESCENT_NEW_BEST
     ground = play(game).flight.recording.seed
     game.key(pygame.K_RETURN)
-    assert (descent(game).start, descent(game).best[0]) == (LegStart(), 1)
+    assert (descent(game).begins, descent(game).best[0]) == (LegStart(), 1)
     assert play(game).flight.recording.seed == ground
     assert play(game).flown.ghost.name == texts.GHOST_BEFORE
     land(game)
@@ -122,10 +122,10 @@ def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_
     total = descent(game).total
     game.key(pygame.K_TAB)
     game.frames(5)
-    assert play(game).flight.hand is StickHolder.NETWORK
+    assert play(game).flight.chooser.hand is StickHolder.NETWORK
     land(game)
     assert (descent(game).total, descent(game).streak, descent(game).legs) == (total, 0, 2)
-    assert play(game).flight.hand is StickHolder.HUMAN  # a relief, for one leg
+    assert play(game).flight.chooser.hand is StickHolder.HUMAN  # a relief, for one leg
     land(game)
     entries = Records(context.user_dir).entries()
     assert [entry.bar for entry in entries] == ["", "relieved", "relieved"]
@@ -137,21 +137,21 @@ def test_another_start_asks_before_it_ends_a_run_and_comes_at_once_where_none_is
     game.frames(3)
     for key in (pygame.K_r, pygame.K_n):
         game.keys(key)
-        assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
+        assert (game.top_name, descent(game).begins.number) == ("PlayScene", 1)
         land(game)
         game.keys(key)
         assert game.top_name == "QuestionDialog"
         assert "1 leg landed" in game.top.more
         game.keys(pygame.K_RETURN)  # the answer in focus is the harmless one
-        assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+        assert (game.top_name, descent(game).begins.number) == ("PlayScene", 2)
         game.keys(key, pygame.K_ESCAPE)
-        assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+        assert (game.top_name, descent(game).begins.number) == ("PlayScene", 2)
         game.keys(key, pygame.K_RIGHT, pygame.K_RETURN)
-        assert (game.top_name, descent(game).start.number, descent(game).total) == ("PlayScene", 1, 0)
+        assert (game.top_name, descent(game).begins.number, descent(game).total) == ("PlayScene", 1, 0)
     land(game)
     crash(game)
     game.key(pygame.K_n)
-    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1), "a run that has ended is not lost"
+    assert (game.top_name, descent(game).begins.number) == ("PlayScene", 1), "a run that has ended is not lost"
 
 
 # A tap counts, even if a slow frame brings the press and the release at once.
@@ -186,9 +186,9 @@ def test_a_tap_within_one_frame_begins_a_flight_that_waits(open_game: Open, devi
     tap(driver, device)
     assert not play(driver).waiting
     driver.frames(3)
-    actions = play(driver).flight.recording.actions
-    assert actions[0] >= 3  # it fires for the step of the press, and no longer
-    assert all(action < 3 for action in actions[1:])
+    flown = actions(play(driver).flight)
+    assert flown[0] >= 3  # it fires for the step of the press, and no longer
+    assert all(action < 3 for action in flown[1:])
 
 
 def test_a_tap_switches_a_latched_engine_on_and_the_next_one_off(open_game: Open):
@@ -198,7 +198,7 @@ def test_a_tap_switches_a_latched_engine_on_and_the_next_one_off(open_game: Open
     for on in (True, False):
         tap(driver, "key")
         driver.frames(5)
-        assert (play(driver).flight.recording.actions[-1] >= 3) is on
+        assert (play(driver).flight.recording.pushes[-1].action >= 3) is on
 
 
 def test_the_tap_that_asks_for_another_start_does_not_begin_it(open_game: Open):

@@ -16,9 +16,9 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
-from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
+from game.flight.logbook import ladder_rung
 from game.flight.outcomes import outcome_card
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.free import FreeFlight
@@ -28,7 +28,7 @@ from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.game.play.ends import BESIDE, ON_PAD, TOO_FAST, end, place
 from tests.support.driver import Driver
-from tests.support.flights import challenge_of, fly_out, play
+from tests.support.flights import begun, challenge_of, concluded, fly_out, play
 from tests.support.player import Player
 from tests.support.reading import Weighs
 
@@ -105,28 +105,28 @@ def test_another_try_is_the_very_same_start_and_the_top_is_flights_from_anywhere
     assert play(driver).ending.card.rung is None
 
 
-def noted(rung: int, flight: Flight, *ends: Flight) -> tuple[FreeFlight, Settings]:
+def noted(rung: int, flight: Flight, *ends: Flight) -> Settings:
     settings = Settings(rung=rung)
     free = FreeFlight(settings)
     for each in (flight, *ends):
-        free.note_end(each, Credit(each, settings, free))
-    return free, settings
+        concluded(free, each)
+    return settings
 
 
 def test_only_crashes_of_ones_own_lead_down_and_only_landings_of_ones_own_up():
     def ended(*state: float) -> Flight:
-        flight = Flight(7, ScriptedPilot(), LADDER.spawn(3))
+        flight = begun(7, ScriptedPilot(), LADDER.spawn(3))
         place(flight.env, *state)
         return fly_out(flight)
 
     crash, landing, beside = (ended(*state) for state in (TOO_FAST, ON_PAD, BESIDE))
     for flights, rung in (([crash, crash], 2), ([crash, landing, crash], 4), ([beside] * 3, 3)):
-        assert noted(3, *flights)[1].rung == rung
-    flight = Flight(7, ScriptedPilot(), LADDER.spawn(0))
-    flight.hand_over()
+        assert noted(3, *flights).rung == rung
+    flight = begun(7, ScriptedPilot(), LADDER.spawn(0))
+    flight.chooser.hand_over()
     fly_out(flight)
-    free, settings = noted(0, flight)
-    card = free.card(outcome_card(flight.env, flight.share), flight, Credit(flight, settings, free))
+    settings = Settings(rung=0)
+    card = concluded(FreeFlight(settings), flight)
     assert flight.outcome is Outcome.LANDED
     assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
 
@@ -139,10 +139,10 @@ def test_who_has_landed_often_before_begins_high_up_and_the_page_of_play_says_wh
         ([], 0), ([entry("LANDED")] * 4, 4), ([entry("LANDED", 0.0)] * 4, 0), ([entry("LANDED")] * 60, TOP_RUNG)
     ):  # fmt: skip
         settings = Settings()
-        FreeFlight(settings).recall([*entries, entry("CRASHED")])
+        ladder_rung(settings, [*entries, entry("CRASHED")])
         assert settings.rung == rung
     settings = Settings(rung=2)
-    FreeFlight(settings).recall([entry("LANDED")] * 60)
+    ladder_rung(settings, [entry("LANDED")] * 60)
     assert settings.rung == 2
     context.settings.rung = -1
     page = FlightsScene(context)
@@ -173,8 +173,8 @@ def test_after_three_crashes_without_a_landing_between_one_key_or_a_click_turns_
     assert settings.help == "guard"
     driver.frames(2)
     assert not play(driver).flight.over
-    assert play(driver).flight.shared
-    assert play(driver).flight.hand is StickHolder.HUMAN
+    assert play(driver).flight.chooser.shared
+    assert play(driver).flight.chooser.hand is StickHolder.HUMAN
 
 
 def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: Open, written: list[str]):
@@ -190,16 +190,16 @@ def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: 
         driver.frames(8)
         interrupt()
         driver.frames(2)
-        steps = len(play(driver).flight.recording.actions)
+        steps = play(driver).flight.at
         written.clear()
         driver.frames(10)
         assert play(driver).waiting, way
-        assert len(play(driver).flight.recording.actions) == steps > 5, way
+        assert play(driver).flight.at == steps > 5, way
         assert texts.WAITS_AGAIN in written, way
         driver.key(pygame.K_LEFT)
         driver.frames(3)
         assert not play(driver).waiting, way
-        assert len(play(driver).flight.recording.actions) > steps, way
+        assert play(driver).flight.at > steps, way
 
 
 # The rescue
@@ -221,15 +221,15 @@ def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Op
     assert challenge.sentence(flight, controls).startswith(first)
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
-    assert flight.hand.name == "NETWORK"
+    assert flight.chooser.hand.name == "NETWORK"
     assert challenge.sentence(flight, controls) == texts.TUTORIAL_LONG.format(who=texts.THE_NETWORK)
-    flight.overridden = True  # only who was saved is said not to have crashed
+    flight.choice = flight.choice._replace(overridden=True)  # only who was saved is said not to have crashed
     challenge.follow(flight)
-    flight.overridden = False
+    flight.choice = flight.choice._replace(overridden=False)
     assert challenge.sentence(flight, controls) == texts.TUTORIAL_BROUGHT.format(who=texts.THE_NETWORK)
-    flight.hand_over()  # the player may still take it back
+    flight.chooser.hand_over()  # the player may still take it back
     challenge.follow(flight)
-    assert flight.hand is StickHolder.HUMAN
+    assert flight.chooser.hand is StickHolder.HUMAN
     assert challenge.sentence(flight, controls).startswith(later)
 
 
@@ -245,7 +245,7 @@ def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: 
     written.clear()
     player.frames(3)
     assert any(word.startswith(texts.TUTORIAL_PATHS.split(".")[0]) for word in written)
-    assert play(player).flight.shared
+    assert play(player).flight.chooser.shared
     assert play(player).flown.path_preview.asks
     player.hold("left", down=True)
     player.frames(60)
@@ -261,33 +261,34 @@ def test_nobody_hands_over_where_a_guard_is_to_be_seen(open_game: Open):
     driver.key(pygame.K_TAB)
     driver.frames(30)
     assert play(driver).waiting
-    assert (play(driver).flight.hand, challenge_of(driver).lesson.name) == (StickHolder.HUMAN, "dial")
+    assert (play(driver).flight.chooser.hand, challenge_of(driver).lesson.name) == (StickHolder.HUMAN, "dial")
     driver.keys(pygame.K_PLUS, pygame.K_LEFT)
     while challenge_of(driver).lesson.name != "rescue":
         driver.skip()
     driver.key(pygame.K_TAB)
     driver.frames(2)
-    assert (play(driver).flight.hand, challenge_of(driver).through) == (StickHolder.HUMAN, False)
+    assert (play(driver).flight.chooser.hand, challenge_of(driver).rules.through) == (StickHolder.HUMAN, False)
 
 
 def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
     driver = at_lesson(open_game, "dial")
-    challenge, down = challenge_of(driver), Flight(0)
+    challenge, down = challenge_of(driver), begun(0)
     place(down.env, *ON_PAD)
     while not down.over:
-        down.step(0)
+        down.step()
     card = outcome_card(down.env, 1.0)
     for human, saved, title, reason in (
         (1.0, 0, texts.TUTORIAL_DONE, texts.TUTORIAL_NOT_NEEDED),
         (0.7, 0, texts.TUTORIAL_GOOD["land"], texts.TUTORIAL_HELPED.format(who=texts.THE_NETWORK, percent=30)),
         (0.7, 1, texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED),
     ):
-        landed = SimpleNamespace(share=human, network=play(driver).flight.network)
-        shown = challenge.card(replace(card, stepped_in=saved), landed, play(driver).credit)
+        landed = SimpleNamespace(share=human, chooser=play(driver).flight.chooser)
+        shown = replace(card, stepped_in=saved)
+        challenge._add_to(SimpleNamespace(flight=landed), shown)
         assert (shown.title, shown.reason) == (title, reason), (human, saved)
 
 
 def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
     driver = at_lesson(open_game, "dial")
     driver.key(pygame.K_n)
-    assert play(driver).challenge.free
+    assert play(driver).challenge.rules.free

@@ -109,7 +109,7 @@ def test_the_replay_says_what_the_flight_earns_whatever_it_claims(open_game: Ope
     assert texts.COURSE_FREE[1] in written
     page(driver).flight_replay.scout(10_000)
     driver.frames(2)
-    assert f"{texts.COURSE_FREE[1]}  ·  landed, {record.entry.score} points" in written
+    assert f"{texts.COURSE_FREE[1]} · landed, {record.entry.score} points" in written
 
 
 def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, record: Record, clipboard: list[str]):
@@ -134,6 +134,8 @@ def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, c
     code = sharing.code(replace(record, entry=replace(record.entry, score=999)))
     driver = open_game()
     driver.post(pygame.DROPTEXT, text=code)
+    driver.frames(2)
+    driver.press_on(texts.MORE[0])
     driver.frames(2)
     driver.press_on(texts.CODE_COPY)
     assert clipboard[-1] == code

@@ -4,18 +4,21 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.flights.recording import Recording
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core.scene import Push
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS, Flight
+from game.flight.choosers import Alone
+from game.flight.flight import Flight
+from game.flight.networks import DECISION_STEPS
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.ghost import Ghost
 from game.scenes.play.scene import PlayScene
 from game.world.camera import Camera, View
 from tests.game.play.ends import end, place
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import begun, play
 
 PAD = float(PARAMS.pad_top + PARAMS.stand + 0.01)
 FALLING = (8, 3, 0, -3, 0, 0)
@@ -51,7 +54,7 @@ def ghost(driver: Driver) -> Ghost:
 
 
 def test_a_ghost_flies_as_the_rival_would_alone():
-    pilot, ghost = ScriptedPilot(), Ghost(Flight(7, ScriptedPilot()), "pilot")
+    pilot, ghost = ScriptedPilot(), Ghost(Flight(Recording(7, "random"), Alone(ScriptedPilot())), "pilot")
     env = LanderEnv(1, 7, frame_skip=DECISION_STEPS)
     observation = env.reset()
     assert np.array_equal(env.position, ghost.flight.env.position)
@@ -73,9 +76,9 @@ def test_both_begin_at_one_place_and_time_and_yours_is_the_same_as_without_a_gho
     driver.frames(60)
     assert mine.env.steps[0] == theirs.env.steps[0] > 10
     assert not np.array_equal(mine.env.position, theirs.env.position)
-    alone = Flight(12)
-    for action in mine.recording.actions:
-        alone.step(action)
+    alone = begun(12)
+    for push in mine.recording.pushes:
+        alone.step(push)
     assert np.array_equal(alone.env.position, mine.env.position)
 
 
@@ -108,7 +111,7 @@ def test_a_ghost_that_still_flies_has_no_figures_and_flies_on(duel):
 
 
 def test_of_two_who_land_the_card_says_who_was_first():
-    ghost, yours = Ghost(Flight(1, Idle()), "rival"), LanderEnv(1, 1, frame_skip=1)
+    ghost, yours = Ghost(Flight(Recording(1, "random"), Alone(Idle())), "rival"), LanderEnv(1, 1, frame_skip=1)
     yours.reset()
     for env in (ghost.flight.env, yours):
         place(env, 0, PAD, 0, 0, 0, 0)

@@ -10,10 +10,11 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.futures import KEYS, Lookahead
+from ai.copilot.futures import Lookahead
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.moment import Moment
+from ai.lander.push import KEYS
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight import networks
@@ -27,7 +28,7 @@ from game.scenes.play.scene import PlayScene
 from game.scenes.play.words import why_not_saved
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import fly_out, play
+from tests.support.flights import begun, fly_out, play
 
 Open = Callable[..., Driver]
 
@@ -46,11 +47,11 @@ def noisy() -> Iterator[int]:
 
 def lost(agent: DeepQAgent) -> tuple[Flight, LastChance]:
     """Turn all the way with noisy hands and a help that cannot keep it upright."""
-    flight, chance, held = Flight(2, agent), LastChance(agent), noisy()
-    flight.help(0.01)
+    flight, chance, held = begun(2, agent), LastChance(agent), noisy()
+    flight.chooser.help(0.01)
     while not flight.over:
         chance.note(flight.env)
-        flight.step(next(held))
+        flight.step(KEYS[next(held)])
     while not chance.known:
         chance.look(50)
     return flight, chance
@@ -67,18 +68,18 @@ def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: Dee
 def test_what_would_have_saved_it_does(agent: DeepQAgent):
     _, chance = lost(agent)
     assert chance.seconds is not None
-    again, held = Flight(2, agent), noisy()
-    again.help(0.01)
+    again, held = begun(2, agent), noisy()
+    again.chooser.help(0.01)
     while float(again.env.time[0]) < chance.seconds:
-        again.step(next(held))
+        again.step(KEYS[next(held)])
     [plan] = Lookahead(agent).plans(Moment.of(again.env), [(0, (KEYS[0],))])
     assert plan is not None
 
 
 def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAgent):
-    flight = Flight(4, agent)
+    flight = begun(4, agent)
     futures = SixFutures(agent)
-    futures.begin(Flight(9, agent).env)  # of another moment, left at once
+    futures.begin(begun(9, agent).env)  # of another moment, left at once
     futures.follow(3)
     futures.begin(flight.env)
     before = flight.env.snapshot()
@@ -86,12 +87,12 @@ def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAge
         futures.follow(10)
     assert all(lands is not None for lands in futures.lands)
     for action, (path, lands) in enumerate(zip(futures.paths, futures.lands, strict=True)):
-        flown = Flight(4, agent)
+        flown = begun(4, agent)
         for _ in range(round(60 * HELD / 4) * 4):
-            flown.step(action)
-        flown.hand_over()
+            flown.step(KEYS[action])
+        flown.chooser.hand_over()
         while not flown.over:
-            flown.step(0)
+            flown.step()
         assert (flown.outcome is Outcome.LANDED) is lands
         assert path[-1] == pytest.approx(flown.env.position[0], abs=0.6)
     assert (flight.env.snapshot()["bodies"]["pose"] == before["bodies"]["pose"]).all()
@@ -100,12 +101,12 @@ def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAge
 def test_a_landing_that_is_soft_centred_and_upright_is_perfect():
     for start, met in (((0.0, 0.02, 0.0), ["soft", "centred", "upright"]), ((1.6, 0.02, 0.0), ["soft", "upright"])):
         aside, above, angle = start
-        flight = Flight(0)
+        flight = begun(0)
         x, y = flight.env.pad[0].tolist()
         state = [x + aside, y + PARAMS.stand + above, 0, 0, angle, 0]
         flight.env.place(np.ones(1, bool), np.array([state]))
         while not flight.over:
-            flight.step(0)
+            flight.step()
         assert qualities(flight.env) == met
         assert (outcome_card(flight.env, 1.0).title == texts.PERFECT) is (len(met) == 3)
 
@@ -117,14 +118,14 @@ def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_c
     context.settings_file.save(context.settings)
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
     driver.frames(2)
-    assert not play(driver).flight.shared
+    assert not play(driver).flight.chooser.shared
     assert texts.HELP_NOT_HERE in written
     driver.key(pygame.K_PLUS)
     driver.frames(2)
-    assert play(driver).flight.shared
+    assert play(driver).flight.chooser.shared
     assert driver.app.context.settings.help == "guide"
     driver.key(pygame.K_r)
-    assert play(driver).flight.shared  # for this mission it stays
+    assert play(driver).flight.chooser.shared  # for this mission it stays
 
 
 # How often a co-pilot stepped in, whether a guardian watched over all of a flight, and what is said of it.
@@ -134,7 +135,8 @@ def follow(shown: Interventions, assist: float | None, *, changed: bool = False)
     """Follow a step under a guardian with that assist, or under none."""
     guarded, decision = assist is not None, SimpleNamespace(assist=assist)
     flight = SimpleNamespace(
-        decision=decision, shared=guarded, guarded=guarded, guard=None, overridden=changed,
+        choice=SimpleNamespace(together=decision, guarded=guarded, overridden=changed),
+        chooser=SimpleNamespace(shared=guarded, guard=None),
         env=SimpleNamespace(position=np.zeros((1, 2))),
     )  # fmt: skip
     shown.follow(flight)
@@ -211,8 +213,8 @@ def test_it_takes_the_place_of_a_shipped_network_and_not_of_ones_own(tmp_path: P
 
 def test_handed_the_stick_it_lands_every_mission(anywhere: networks.Policy):
     for name in ELSEWHERE:
-        flight = Flight(0, anywhere, mission=name)
-        assert flight.hand_over()
+        flight = begun(0, anywhere, mission=name)
+        assert flight.chooser.hand_over()
         assert fly_out(flight).outcome is Outcome.LANDED, name
         assert set(flight.recording.hands) == {StickHolder.NETWORK}
 
@@ -248,5 +250,5 @@ def test_where_it_cannot_be_read_the_usual_network_flies_and_that_is_said(
     assert isinstance(play(driver).network.policy, DeepQAgent)
     assert driver.said.startswith("modern flies here")
     driver.key(pygame.K_TAB)
-    assert play(driver).flight.hand is StickHolder.NETWORK
+    assert play(driver).flight.chooser.hand is StickHolder.NETWORK
     driver.frames(10)

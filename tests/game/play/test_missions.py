@@ -10,14 +10,11 @@ from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.scene import Pop
-from game.core.settings import Settings
 from game.explain.readouts import flight_readouts
 from game.flight import flight_file
-from game.flight.credit import Credit
-from game.flight.flight import Flight
+from game.flight.choosers import Recorded
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
-from game.flight.replay import ReplayedFlight
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.missions import MissionsScene
@@ -27,7 +24,7 @@ from game.ui.context import Context
 from game.ui.listing import ListRow
 from tests.game.play.ends import end
 from tests.support.driver import Driver
-from tests.support.flights import kept, play, scripted
+from tests.support.flights import actions, begun, concluded, kept, play, scripted
 from tests.support.missions import fly, pilots
 
 Open = Callable[..., Driver]
@@ -53,7 +50,7 @@ def test_every_mission_has_words_and_can_be_begun():
 def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(subtests: pytest.Subtests):
     for mission in MISSIONS.values():
         with subtests.test(name=mission.name):
-            env = Flight(0, None, mission=mission.name).env
+            env = begun(0, None, mission=mission.name).env
             for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
                 for steps in range(round(600 * most_fuel) - 40, round(600 * most_fuel) + 41):  # of a jet, a 600th each
                     env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
@@ -129,13 +126,13 @@ def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game:
 
 def carded(name: str, fuel: float, seconds: float, cause: Cause = Cause.NONE) -> OutcomeCard:
     """The card of a mission that ended in a landing, or was lost for a cause."""
-    flight = Flight(0, None, mission=name)
+    flight = begun(0, None, mission=name)
     env = flight.env
     env.outcome[:], env.cause[:] = Outcome.CRASHED if cause else Outcome.LANDED, cause
     env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
     challenge = FlownMission(MISSIONS[name])
     card = OutcomeCard(not cause, "", "", (), 1.0, advice="else")
-    return challenge.card(card, flight, Credit(flight, Settings(), challenge))
+    return concluded(challenge, flight, card)
 
 
 def test_the_card_says_what_the_next_medal_asks_and_of_a_loss_what_the_missions_own_trouble_does():
@@ -158,7 +155,7 @@ def test_the_card_says_what_the_next_medal_asks_and_of_a_loss_what_the_missions_
 
 
 def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
-    flight = Flight(0, None, mission="ferry")
+    flight = begun(0, None, mission="ferry")
     env = flight.env
     env.steps[:] = 60 * 4
     shift, speed = float(env.pad_shift[0]), float(env.pad_velocity[0])
@@ -174,10 +171,10 @@ def test_what_surrounds_a_flight_is_said():
         ("fall", 0.0, []), ("outage", 1.0, ["The main engine fails in 1.0 s"]),
         ("outage", 3.0, ["No main engine for 1.0 s"]), ("outage", 5.0, []),
     ):  # fmt: skip
-        env = Flight(0, None, mission=name).env
+        env = begun(0, None, mission=name).env
         env.steps[:] = round(60 * seconds)
         assert list(surroundings(env)) == said, (name, seconds)
-    mars = Flight(0, None, mission="mars").env
+    mars = begun(0, None, mission="mars").env
     assert "2.3 times" in next(iter(surroundings(mars)))
     mars.steps[:] = 75
     assert wind(mars) == pytest.approx(0.1, abs=0.05)
@@ -188,7 +185,7 @@ def test_beside_the_player_flies_the_network_or_a_landing_that_was_recorded(open
     for lands in (True, False):
         monkeypatch.setattr(Mission, "network_lands", lands)
         driver.key(pygame.K_RETURN)
-        assert isinstance(play(driver).flown.ghost.flight, ReplayedFlight) is not lands
+        assert isinstance(play(driver).flown.ghost.flight.chooser, Recorded) is not lands
         driver.app.scenes.apply(Pop())
 
 
@@ -207,10 +204,10 @@ def test_a_flight_is_flown_on_from_the_moment_that_is_shown(open_game: Open, con
     book.key(pygame.K_TAB)
     flight = play(book).flight
     assert np.array_equal(flight.env.position, place)
-    assert flight.recording.actions == flight_replay.record.recording.actions[:at]
+    assert actions(flight) == actions(flight_replay.record)[:at]
     book.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     book.frames(10)
-    assert len(flight.recording.actions) > at
+    assert flight.at > at
     assert play(book).flown.ghost.flight.env.steps[0] == flight.env.steps[0]
     land(book)
     assert not Records(book.app.context.user_dir).entries()[-1].alone

@@ -27,7 +27,7 @@ from game.scenes.play.starts import fly_on
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import challenge_of, fly_out, kept, play
+from tests.support.flights import begun, challenge_of, fly_out, kept, play
 from tests.support.reading import OnlyFlies, Reading, Weighs, flew, pattern
 from tests.support.screens import save_settings
 
@@ -36,9 +36,9 @@ Open = Callable[..., Driver]
 
 @cache
 def flown(mission: str, hand: StickHolder) -> Flight:
-    flight = Flight(3, Weighs(), mission=mission)
+    flight = begun(3, Weighs(), mission=mission)
     if hand is StickHolder.NETWORK:
-        flight.hand_over()
+        flight.chooser.hand_over()
     return fly_out(flight)
 
 
@@ -106,7 +106,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
         assert challenge_of(driver).why in page.words
         return
     page = reading.check(140 if "pace" in settings else 70)  # at half speed the card takes twice as long to come
-    if play(driver).challenge and not play(driver).challenge.kept:
+    if play(driver).challenge and not play(driver).challenge.rules.kept:
         return
     entry = Records(context.user_dir).entries()[-1]
     assert entry.outcome == outcome.name
@@ -135,7 +135,9 @@ def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, sc
     save_settings(context, **settings)
     reading = Reading(open_game(SCENES[scene]), monkeypatch)
     flight = reading.driver.top.flight
-    assert (flight.copilot is not None) == (flight.network is not None and flight.shares)  # or nothing is shared here
+    assert (flight.chooser.copilot is not None) == (
+        flight.chooser.network is not None and flight.chooser.shares
+    )  # or nothing is shared here
     return reading
 
 
@@ -217,7 +219,7 @@ def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, conte
     assert driver.said == texts.FLOWN_ALONE
     play(driver).choose_network("stand-in")  # in a pause
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
-    assert play(driver).flight.hand is StickHolder.HUMAN
+    assert play(driver).flight.chooser.hand is StickHolder.HUMAN
     assert reading.check(3).who == {"person"}
 
 

@@ -18,6 +18,7 @@ from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.switch_scan import DWELL, HELD
 from tests.support.driver import Driver
+from tests.support.flights import actions
 from tests.support.one_switch import SlowSwitch
 from tests.support.player import Player
 from tests.support.screens import save_settings
@@ -72,7 +73,7 @@ def test_a_press_for_thrust_is_named_and_counts_like_any_other(open_game: Open, 
     while not play.flight.over:
         game.skip(10)
     game.skip(200)
-    assert set(play.flight.recording.actions[2:]) == {3}  # it stayed on
+    assert set(actions(play.flight)[2:]) == {3}  # it stayed on
     assert texts.ASSIST_WORDS["toggle_thrust"] in play.ending.card.assists
     assert play.credit.counts
 

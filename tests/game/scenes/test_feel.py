@@ -9,9 +9,10 @@ import pytest
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.flight import networks
-from game.flight.replay import ReplayedFlight
+from game.flight.replay import replayed
 from game.scenes.play.scene import PlayScene
 from tests.support.driver import Driver
+from tests.support.flights import actions
 
 Open = Callable[..., Driver]
 FALL = (8.0, 4.0, 1.0, -3.0, 0.3, 0.0)  # beside the pad
@@ -54,10 +55,10 @@ def frames_to_card(driver: Driver) -> int:
 def test_a_crash_is_slow_for_under_a_second_more_and_adds_nothing_to_the_flight(game: Driver):
     crash(game)
     flight = scene(game).flight
-    flown = len(flight.recording.actions)
+    flown = flight.at
     assert scene(game).flown.pace.slow
     slowly = frames_to_card(game)
-    assert len(flight.recording.actions) == flown
+    assert flight.at == flown
     assert flight.env.steps[0] == flown
     game.key(pygame.K_r)
     game.app.context.settings.reduced_motion = True
@@ -78,11 +79,11 @@ def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver
         game.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
         flight = scene(game).flight
         game.wait(lambda flight=flight: flight.over)  # type: ignore[misc]
-        again = ReplayedFlight(flight.recording)
+        again = replayed(flight.recording)
         while not again.over:
-            again.step(0)
+            again.step()
         assert np.array_equal(again.poses.now, flight.poses.now)
-        ends.append((flight.recording.actions, flight.poses.now.tolist()))
+        ends.append((actions(flight), flight.poses.now.tolist()))
     assert ends[0] == ends[1]
 
 

@@ -160,7 +160,7 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(open_game: Open, contex
     driver = open_game(PlayScene, seed=1)
     driver.key(pygame.K_TAB)
     driver.frames(30)
-    assert play(driver).flight.hand is StickHolder.HUMAN
+    assert play(driver).flight.chooser.hand is StickHolder.HUMAN
     assert "weights" in play(driver).network.problem
     assert play(driver).network.problem[:18] in driver.said  # a long one is shortened in its middle
 
@@ -209,20 +209,20 @@ def test_the_pause_changes_the_network_in_mid_flight_and_one_that_breaks_gives_t
     assert play(driver).network.name == "modern"
     driver.keys(*[pygame.K_TAB] * (1 + (hand is StickHolder.HUMAN)))
     driver.frames(20)
-    flight, before = play(driver).flight, play(driver).flight.network
+    flight, before = play(driver).flight, play(driver).flight.chooser.network
     driver.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top_name == "NetworksScene"
     driver.keys(pygame.K_END, pygame.K_RETURN)  # the one that was saved first
     assert "PauseScene" in driver.top_name
     driver.keys(pygame.K_ESCAPE)
     assert play(driver).flight is flight
-    assert flight.hand is hand
-    assert flight.network is not before
+    assert flight.chooser.hand is hand
+    assert flight.chooser.network is not before
     assert play(driver).network.name == context.settings.model == "a"
     driver.frames(20)
     play(driver).choose_network("hurt")
     driver.frames(5)
-    assert flight.hand is StickHolder.HUMAN
+    assert flight.chooser.hand is StickHolder.HUMAN
     assert "No network" in driver.said
 
 

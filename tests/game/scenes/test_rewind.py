@@ -8,7 +8,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.training.history import COLUMNS, Checkpoint, Point
+from ai.training.history import Checkpoint
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import CHARTS, INSIDE
@@ -16,6 +16,7 @@ from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
+from tests.support.points import point
 from tests.support.small import learn, pause
 
 POINTS = 5
@@ -198,7 +199,11 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     history = driver.top.run.history
     for decisions in (300.0, 600.0):
         history.append(
-            Point(**(dict.fromkeys(list(COLUMNS[:9]), np.nan) | {"seconds": decisions / 100, "decisions": decisions}))
+            point(
+                seconds=decisions / 100,
+                decisions=decisions,
+                **dict.fromkeys(("success_rate", "mean_return", "loss", "mean_q"), np.nan),
+            )
         )
     if values is not None:  # a checkpoint of another network
         history.append(Checkpoint(1.0, 100, 0.0, values))

@@ -216,7 +216,7 @@ def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
 
 def flown(run: TrainingRun) -> bool:
     """Whether a flight of it has ended."""
-    return bool(np.isfinite(run.history["success"]).any())
+    return bool(np.isfinite(run.history["success_rate"]).any())
 
 
 def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -224,7 +224,7 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the experiment begins
     train.press_on(texts.TRAIN_START)
     train.wait(lambda: len(scene.run.history) >= 1)
-    assert not np.isfinite(scene.run.history["success"]).any()
+    assert not np.isfinite(scene.run.history["success_rate"]).any()
     monkeypatch.setattr(inline_worker, "TURNS", 40)
     split(train)
     for each in (scene.run, scene.run.twin):
@@ -240,13 +240,15 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
 def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
     scene = train.top
     train.press_on(texts.TRAIN_START)
-    train.wait(lambda: np.isfinite(scene.run.history["success"]).any())
+    train.wait(lambda: np.isfinite(scene.run.history["success_rate"]).any())
     split(train)
     train.press_on(texts.LAB_KEEP_RUN)
     train.frames(3)
     assert scene.run.earlier == [], "its curve would lie on the other, bit for bit"
     scene.knobs.turn("discount", 0.9)
-    train.wait(lambda: len(scene.run.history.setting_changes) > 0 and np.isfinite(scene.run.history["success"]).any())
+    train.wait(
+        lambda: len(scene.run.history.setting_changes) > 0 and np.isfinite(scene.run.history["success_rate"]).any()
+    )
     split(train)
     assert len(scene.run.earlier) == 1
 

@@ -65,7 +65,7 @@ def test_a_flight_is_flown_paused_handed_over_and_left(open_screen, device: str)
     player.choose(texts.MENU["play"][0])
     player.choose(texts.FLIGHTS["free"][0])
     player.press("main", "hand over")
-    assert player.top.flight.hand is StickHolder.NETWORK
+    assert player.top.flight.chooser.hand is StickHolder.NETWORK
     player.press("hand over", "pause")
     assert "PauseScene" in player.top_name
     player.choose(texts.PAUSE_LEAVE)
@@ -147,17 +147,17 @@ def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
     left, right = 1, 3
     game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((20, 400)), button=left)
     game.frames(5)
-    assert play.flight.recording.actions[-1] == 3
+    assert play.flight.recording.pushes[-1].action == 3
     game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((20, 400)), button=right)
     game.frames(2)
-    assert play.flight.recording.actions[-1] == 4
+    assert play.flight.recording.pushes[-1].action == 4
     game.move((1260, 400))
-    assert play.flight.recording.actions[-1] == 5
+    assert play.flight.recording.pushes[-1].action == 5
     for button in (left, right):
         game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1260, 400)), button=button)
-    assert play.flight.recording.actions[-1] == 0
+    assert play.flight.recording.pushes[-1].action == 0
     game.click(game.hints()[texts.HINT_HAND_OVER])
-    assert play.flight.hand is StickHolder.NETWORK
+    assert play.flight.chooser.hand is StickHolder.NETWORK
     game.click(game.hints()[texts.HINT_PAUSE])
     assert "PauseScene" in game.top_name
     game.frames(2)

@@ -285,7 +285,7 @@ NOT_AT = {
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+    "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
     "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
     "DigitTrainingScene",
 }  # fmt: skip
@@ -301,7 +301,7 @@ ONLY_AT = {
     },
     at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
     | {"Play", "mission", "daily", "descent", "LogbookScene, with much to list", "MissionsScene, with much to list"}
-    | {"DigitsScene", "DigitInsideScene", "WhyNotScene", "DreamScene"},
+    | {"DigitsScene", "DigitInsideScene", "inside, sums", "inside, dreams"},
     in_flight_there_is_one_sentence: IN_FLIGHT,
 }  # fmt: skip
 

@@ -17,6 +17,7 @@ from game.ui.form import Form
 from game.ui.panel import Column
 from game.ui.widget import Widget
 from tests.ai.training.test_hints import HEALTHY
+from tests.support.points import point_of
 
 MODERN = PRESETS["modern"]
 
@@ -28,7 +29,7 @@ def broken() -> History:
     for number in range(400):
         success = 0.97 if number < 300 else 0.2
         run.append(replace(HEALTHY, seconds=number / 10, decisions=1000.0 * number, episodes=9.0 * number,
-                           success=success))  # fmt: skip
+                           success_rate=success))  # fmt: skip
     run.append(Checkpoint(20.0, 200_000, 0.97, np.zeros(3, np.float32)))
     run.append(Checkpoint(39.0, 390_000, 0.2, np.zeros(3, np.float32)))
     return run
@@ -73,8 +74,9 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, broke
     for checkpoint in broken.checkpoints:
         growing.append(checkpoint)
     for number, row in enumerate(broken.points):
-        now = dict(zip(("seconds", "decisions", "episodes", "success"), row.tolist(), strict=False))
-        growing.append(replace(HEALTHY, **now))
+        now = point_of(row)
+        seen = {name: getattr(now, name) for name in ("seconds", "decisions", "episodes", "success_rate")}
+        growing.append(replace(HEALTHY, **seen))
         if number == 300:
             growing.append(SettingChange(300_000, "reward_weights.time", -0.4, 5.0, seconds=30.0))
         advice.follow()

@@ -6,9 +6,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from ai.digits.training import DigitProgress
 from ai.training.config import PRESETS, Config
-from ai.training.history import COLUMNS, DIGIT_COLUMNS, DigitPoint, History, Point, SettingChange, Validation
+from ai.training.history import COLUMNS, DIGIT_COLUMNS, History, SettingChange, Validation
 from ai.training.lander_session import LanderSession
+from ai.training.loop import PARTS
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
@@ -19,8 +21,9 @@ from game.training.run import TrainingRun
 from game.training.run_kind import LANDERS
 from game.ui.curves import run_style
 from tests.ai.training.test_hints import HEALTHY
+from tests.support.points import point
 
-NUMBERS = list(COLUMNS[:10])
+NUMBERS = list(COLUMNS[: -len(PARTS)])
 
 
 def run_of(config: Config, points: float) -> History:
@@ -29,7 +32,7 @@ def run_of(config: Config, points: float) -> History:
     history.reward_scale = config.reward_scale
     for second in range(20):
         values = dict.fromkeys(NUMBERS, 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
-        history.append(Point(**values))
+        history.append(point(**values))
     return history
 
 
@@ -74,7 +77,7 @@ def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
 def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> None:
     history = History(DIGIT_COLUMNS)
     for second in range(1, 5):
-        history.append(DigitPoint(float(second), second, 1.0, 0.1 * second, 0.5, 0.01, 1.0))
+        history.append(DigitProgress(float(second), second, 1.0, 0.1 * second, 0.5, 0.01, 1.0))
         history.append(Validation(second, 0.9, 0.9, best=True, seconds=float(second)))
     history.append(SettingChange(2, "learning_rate", 0.1, 0.2, seconds=2.0))
     loss, accuracy = looked(TrainingCharts(DIGIT_CHARTS), history).charts

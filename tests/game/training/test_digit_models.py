@@ -9,14 +9,14 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
-from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.digits.reader import Reader
 from game.scenes.digits.scene import DigitsScene
-from game.training.digit_models import called, models_by_name, runs_dir
+from game.training.library import DigitModels, called, models_by_name
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.pen import draw, guess, strokes
+from tests.support.screens import save_settings
 
 CONFIGS = [
     DIGIT_PRESETS["classic"].changed(hidden=(8,), dropout=0.4),  # dropout comes before all weights
@@ -26,7 +26,7 @@ CONFIGS = [
 
 
 def save(context: Context, name: str, config=CONFIGS[0]) -> Path:
-    folder = runs_dir(context.user_dir) / name
+    folder = DigitModels(context.user_dir).folder / name
     DigitClassifier(build_digit_network(config, np.random.default_rng(0))).save(folder)
     return folder
 
@@ -38,15 +38,19 @@ def own(context: Context) -> list[str]:
     return [f"Reader {number}" for number in range(len(CONFIGS))]
 
 
+def reading(open_game: Callable[..., Driver], context: Context) -> Driver:
+    """Draw a digit, with its readers to choose from."""
+    save_settings(context, opened="digits")
+    return open_game(DigitsScene)
+
+
 def test_names_are_those_of_folders_and_none_hides_another(context: Context):
     for name in ("zero", "Modern", ".training"):
         save(context, name)
-    (runs_dir(context.user_dir) / "notes").mkdir()
+    (DigitModels(context.user_dir).folder / "notes").mkdir()
     found = models_by_name(MODELS_DIR, context.user_dir)
     assert list(found) == ["modern", "classic", "Modern (yours)", "zero"]
     assert [called(name) for name in found] == ["Modern", "Classic", "Modern (yours)", "zero"]
-    assert found["modern"].said == "reads 99.61% of the test images"
-    assert found["zero"].said == ""
 
 
 @pytest.mark.parametrize("config", CONFIGS)
@@ -57,41 +61,34 @@ def test_networks_of_any_shape_are_explained(context: Context, config):
     assert np.isfinite(why).all()
 
 
-def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable[..., Driver], own: list[str]):
-    driver = open_game(DigitsScene)
+def test_each_of_them_can_be_chosen(open_game: Callable[..., Driver], own: list[str], context: Context):
+    driver = reading(open_game, context)
     draw(driver, strokes(3))
-    seen = []
-    for _ in range(5):
-        driver.key(pygame.K_n)
-        seen.append(driver.top.chosen)
+    reader = driver.choice(own[0])
+    assert reader.options == ["Modern", "Classic", *own]
+    for index, name in reversed(list(enumerate(["modern", "classic", *own]))):
+        driver.choice(own[0]).choose(index)
+        assert driver.top.chosen == name
         guess(driver)
         assert set(driver.top.reading.probabilities) == {driver.top.chosen, driver.top.live.other}
-    assert seen == ["classic", *own, "modern"]
-    driver.key(pygame.K_b)
-    assert driver.top.chosen == own[-1]
-    words = texts.DIGITS_ALL.format(count=5)
-    driver.click(next(word for word in driver.top.form.widgets if word.label == words).box.center)
-    assert driver.top_name == "ListDialog"
-    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
-    assert driver.top.chosen == "classic"
 
 
 def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
-    driver = open_game(DigitsScene)
-    driver.click(next(word for word in driver.top.form.widgets if word.label == "Train").box.center)
+    driver = reading(open_game, context)
+    driver.press_on("Train")
     assert driver.top_name == "DigitTrainingScene"
     save(context, "mine")
     driver.key(pygame.K_ESCAPE)
-    driver.key(pygame.K_b)
-    assert driver.top.chosen == "mine"
+    assert driver.choice("Modern").options[-1] == "mine"
 
 
 def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver], context: Context, own: list[str]):
-    (runs_dir(context.user_dir) / own[0] / "config.json").write_text("{", encoding="utf-8")
-    driver = open_game(DigitsScene)
-    driver.keys(pygame.K_n, pygame.K_n)
-    assert driver.top.chosen == own[1]
+    (DigitModels(context.user_dir).folder / own[0] / "config.json").write_text("{", encoding="utf-8")
+    driver = reading(open_game, context)
+    driver.choice(own[0]).choose(2)
+    assert driver.top.chosen == "modern"
     assert "config.json" in driver.top.live.reader.problems[own[0]]
+    assert own[0] not in driver.choice(own[1]).options
     draw(driver, strokes(3))
     guess(driver)
     driver.frames(3)

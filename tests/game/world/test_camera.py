@@ -7,7 +7,7 @@ import pytest
 from ai.lander.descent import LegStart
 from ai.lander.environment import LIMITS, PARAMS
 from ai.lander.ground import hilly
-from game.drawing import typeface
+from ai.lander.push import KEYS
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import A_FRAME, paint_on, spend, spread
 from game.drawing.tokens import TEXT_SIZES, VIEW_SIZE
@@ -16,6 +16,7 @@ from game.world import framing
 from game.world.callouts import PadFactors
 from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.sheet import WorldPicture
+from tests.support.flights import begun
 from tests.support.landers import placed, put
 
 
@@ -148,7 +149,7 @@ def test_what_is_scaled_fills_the_view_while_the_camera_pans_and_zooms_and_other
 
 def test_every_flight_begins_with_all_its_pads_in_view():
     for seed in range(12):
-        env = Flight(seed, pads=3).env
+        env = begun(seed, pads=3).env
         view = framing.framed(env, clear=ClearArea(head=196.0)).view(1.0)
         assert all(seen(view, (edge, pad.top)) for pad in env.ground.pads for edge in (pad.left, pad.right)), seed
 
@@ -157,13 +158,13 @@ def test_every_flight_begins_with_all_its_pads_in_view():
 def test_over_whole_flights_the_camera_is_smooth_and_craft_and_pad_are_seen(pads: int):
     rng = np.random.default_rng(7)
     for seed in range(2):
-        flight, camera, action = Flight(seed, pads=pads, area=0), Camera(), 0
+        flight, camera, action = begun(seed, pads=pads, area=0), Camera(), 0
         camera.cut(framing.framed(flight.env))
         shots = []
         for step in range(500):
             if step % 20 == 0:
                 action = int(rng.choice(6))
-            flight.step(action)
+            flight.step(KEYS[action])
             if flight.over:
                 break
             framing.follow(camera, flight.env)
@@ -189,8 +190,9 @@ def look(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Drawn]:
 
     monkeypatch.setattr(Canvas, "text", noted)
 
-    def seen(flight: Flight, factors: PadFactors, head: float = 104.0) -> Drawn:
+    def seen(flight: Flight, factors: PadFactors, head: float = 104.0, zoom: float = 1.0) -> Drawn:
         drawn.clear()
+        canvas.zoom = zoom
         factors.draw(canvas, view_of(), flight.env.position[0], ClearArea(head=head))
         return dict(drawn)
 
@@ -202,10 +204,9 @@ def view_of() -> View:
 
 
 def test_each_of_several_pads_has_its_factor_above_it_at_every_size_of_text(look):
-    flight = Flight(3, pads=3)
-    for growth in TEXT_SIZES.values():
-        typeface.grow(growth)
-        seen = look(flight, PadFactors(flight))
+    flight = begun(3, pads=3)
+    for zoom in TEXT_SIZES.values():
+        seen = look(flight, PadFactors(flight), zoom=zoom)
         assert set(seen) == {"×1", "×3", "×5"}
         for pad in flight.env.ground.pads:
             box, _ = seen[f"×{pad.factor}"]
@@ -216,7 +217,7 @@ def test_each_of_several_pads_has_its_factor_above_it_at_every_size_of_text(look
 
 
 def test_a_factor_stands_below_its_pad_where_words_reach_down_to_it(look):
-    flight = Flight(3, pads=3)
+    flight = begun(3, pads=3)
     above, below = (look(flight, PadFactors(flight), head) for head in (104.0, 700.0))
     for pad in flight.env.ground.pads:
         word, (_, deck) = f"×{pad.factor}", view_of().points((pad.x, pad.top)).tolist()
@@ -224,16 +225,16 @@ def test_a_factor_stands_below_its_pad_where_words_reach_down_to_it(look):
 
 
 def test_a_single_goal_has_none_and_a_flat_spot_brings_both(look):
-    flight = Flight(3)
+    flight = begun(3)
     assert not look(flight, PadFactors(flight))
     for number in range(1, 6):
-        flight = Flight(3, leg=LegStart(number))
+        flight = begun(3, leg=LegStart(number))
         factors = {f"×{pad.factor}" for pad in flight.env.ground.pads if pad.factor}
         assert set(look(flight, PadFactors(flight))) == (factors if len(factors) > 1 else set())
 
 
 def test_the_pad_that_is_aimed_at_is_brightest_and_becomes_so_gently(look):
-    flight = Flight(3, pads=3)
+    flight = begun(3, pads=3)
     factors = PadFactors(flight)
     for number, pad in enumerate(flight.env.ground.pads):
         flight.env.target[:] = number
@@ -247,7 +248,7 @@ def test_the_pad_that_is_aimed_at_is_brightest_and_becomes_so_gently(look):
 
 
 def test_a_factor_gives_way_to_a_craft_that_comes_near(look):
-    flight = Flight(3, pads=3)
+    flight = begun(3, pads=3)
     pad = flight.env.ground.pads[1]
     word, factors, alphas = f"×{pad.factor}", PadFactors(flight), []
     for height in (8.0, 4.5, 3.5):

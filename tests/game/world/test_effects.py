@@ -11,18 +11,20 @@ from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS
 from ai.lander.rules import AREAS
 from ai.lander.sensing import NEAR, near_edges
 from game.audio.flight_sounds import FlightSound
 from game.drawing.canvas import Canvas
-from game.flight.flight import Flight, Recording
-from game.flight.replay import ReplayedFlight
+from game.flight.flight import Recording
+from game.flight.replay import replayed
 from game.scenes.play.words import dangers
 from game.world.camera import View
 from game.world.landscape.ground import draw_edges
 from game.world.particles import ParticleKind, Particles, Relief
 from game.world.stage import Stage
 from game.world.wreck import Wreck
+from tests.support.flights import begun
 from tests.support.landers import placed, put
 from tests.support.listener import Listener
 
@@ -134,17 +136,17 @@ def test_a_wreck_tumbles_to_rest_on_the_ground(seed: int):
 
 def test_no_effect_ever_changes_a_flight():
     """With everything on: what was flown is what the rules alone would have flown, bit for bit, to the last step."""
-    plain, dressed = (Flight(3, ScriptedPilot(), pads=3) for _ in range(2))
+    plain, dressed = (begun(3, ScriptedPilot(), pads=3) for _ in range(2))
     stage = Stage(dressed.env, np.random.default_rng(3))
     for flight in (plain, dressed):
-        flight.hand_over()
+        flight.chooser.hand_over()
     for step in range(900):
         if step == 300:  # by hand into a crash
-            plain.hand_over()
-            dressed.hand_over()
+            plain.chooser.hand_over()
+            dressed.chooser.hand_over()
         was_over = dressed.over
         for flight in (plain, dressed):
-            flight.step(0 if step < 300 else 5)
+            flight.step(KEYS[0 if step < 300 else 5])
         stage.follow(np.zeros(1, bool), np.array([dressed.over and not was_over]))
         assert np.array_equal(plain.poses.now, dressed.poses.now)
     assert plain.outcome is dressed.outcome is not Outcome.FLYING
@@ -187,13 +189,13 @@ def test_people_have_more_room_and_old_recordings_the_room_they_had():
     assert all(new > old for new, old in zip(AREAS[AREA], AREAS[0], strict=True))
     assert LanderEnv(1, 0).limits == LIMITS  # networks are trained in the first area
     for area, (half_width, ceiling) in enumerate(AREAS):
-        limits = ReplayedFlight(Recording(3, "random", area=area)).env.limits
+        limits = replayed(Recording(3, "random", area=area)).env.limits
         assert (limits.half_width, limits.ceiling) == (half_width, ceiling)
-    old, new = (Flight(3, area=area) for area in range(2))
+    old, new = (begun(3, area=area) for area in range(2))
     for flight in (old, new):
         flight.env.place(np.ones(1, bool), np.array([[21.5, 12.0, 3.0, 0, 0, 0]]))
         for _ in range(30):
-            flight.step(0)
+            flight.step()
     assert (old.outcome, new.outcome) == (Outcome.OUT_OF_BOUNDS, Outcome.FLYING)
 
 
