@@ -182,7 +182,7 @@ def test_the_current_line_is_in_sight_however_little_room_there_is():
 def test_escape_is_not_eaten_where_nothing_is_explained():
     explained, canvas = Explained(), Canvas(pygame.Surface((800, 600)))
     explained.action().run()
-    canvas.explain((900, 20, 50, 20), "scrolled out of sight")
+    canvas.explain((9000, 20, 50, 20), "scrolled out of sight")
     explained.draw(canvas)
     assert not explained.handle_event(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE))
     explained.action().run()
