@@ -14,7 +14,7 @@ from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.explain.explained import Explained
-from game.flight import networks, own, sharing
+from game.flight import codes, networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records, ladder_rung
@@ -243,7 +243,7 @@ class PlayScene(Scene):
         if line := self.words.result:
             give(self.context, line, texts.CODE_LINE_COPIED.format(line=line))
         else:
-            give(self.context, sharing.code(record), texts.CODE_COPIED)
+            give(self.context, codes.code(record), texts.CODE_COPIED)
 
     @property
     def leaves(self) -> bool:

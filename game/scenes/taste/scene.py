@@ -11,10 +11,10 @@ import pygame
 from ai.training.preferences import FIRST, NEITHER, SECOND, SUMS
 from ai.training.upbringing import UPBRINGING
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Push, Transition, push
+from game.core.shelf import LibraryError
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.taste.flights import Pair, PairRow, Small
@@ -23,7 +23,7 @@ from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
+    from game.drawing.canvas import Align, Canvas
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
 
@@ -31,6 +31,7 @@ _MORE: Final = "more"
 _CHAPTER: Final = "pay"  # says more of what a network is paid for
 _LEAST: Final = 300.0  # points of a column
 _HIGH, _PAIR, _NOW = 0.5, 0.38, 0.26  # height of a picture, of its width; of the pair and the landers, of the view
+_MIDDLE, _BAR = 0.72, 0.27  # of a column's width: where bars begin, and how long they are at most, each way
 _SEEDS: Final = 1_000_000
 
 
@@ -79,6 +80,7 @@ class TasteScene(PanelScene):
         left.add(lambda cursor: cursor.caption(texts.TASTE_NOW.format(count=self._answers)))
         left.add(self._write_now)
         right.caption(texts.TASTE_BELIEVED)
+        right.add(self._write_sides)
         for number, name in enumerate(SUMS):
             right.add(partial(self._write_liking, number, texts.TASTE_SUMS[name]))
 
@@ -126,13 +128,23 @@ class TasteScene(PanelScene):
         else:
             self.now.draw(cursor.canvas, self._alpha)
 
+    def _write_sides(self, cursor: Cursor) -> None:
+        """Write which side of the bars means what."""
+        box = cursor.take(1.4 * SMALL)
+        if cursor.canvas:
+            for side, word in zip((-1, 1), texts.TASTE_SIDES, strict=True):
+                place = cursor.left + (_MIDDLE + side * _BAR) * cursor.width, box.top + SMALL
+                align: Align = "left" if side < 0 else "right"
+                cursor.canvas.text(word, place, size=SMALL, colour=MUTE, align=align)
+
     def _write_liking(self, number: int, word: str, cursor: Cursor) -> None:
         """Draw how much of a sum is liked, to the right, or disliked, to the left, and how sure that is."""
         cursor.gap(2)
         if (canvas := cursor.canvas) is not None:
             asked = self.run.asked
-            middle, half, y = cursor.left + 0.7 * cursor.width, 0.28 * cursor.width, cursor.y + 0.62 * SMALL * 1.4
-            canvas.text(word, (cursor.left, cursor.y + SMALL), size=SMALL, colour=INK, room=0.4 * cursor.width)
+            middle, half = cursor.left + _MIDDLE * cursor.width, _BAR * cursor.width
+            y, room = cursor.y + 0.62 * SMALL * 1.4, (_MIDDLE - _BAR) * cursor.width - 8
+            canvas.text(word, (cursor.left, cursor.y + SMALL), size=SMALL, colour=INK, room=room)
             canvas.line((middle, y - 7), (middle, y + 7), FAINT)
             if asked is not None and asked.answers:
                 most = max(float(np.abs(asked.liking).max()), 2.0)
@@ -140,7 +152,7 @@ class TasteScene(PanelScene):
                 ends = np.clip([liking - unsure, liking + unsure], -1, 1) * half + middle
                 canvas.line((ends[0], y), (ends[1], y), MUTE)
                 left, right = sorted((middle, middle + half * float(liking)))
-                canvas.fill(canvas.rect(left, y - 3, max(right - left, 1), 6), NET if liking > 0 else HUMAN)
+                canvas.fill(canvas.rect(left, y - 3, max(right - left, 1), 6), NET)
         cursor.gap(1.4 * SMALL)
 
     # Keys
