@@ -123,6 +123,11 @@ def rows() -> dict[str, Row]:
 
     play = Row(lambda context: PlayScene(context, seed=4), FLOWN)
 
+    def mapped(context: Context) -> Scene:
+        scene = WatchScene(context, seed=4)
+        scene.world.policy_map.on = True
+        return scene
+
     def heap(context: Context) -> Scene:
         return PhysicsScene(context, "heap")
 
@@ -154,8 +159,8 @@ def rows() -> dict[str, Row]:
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         "watch": Row(lambda context: WatchScene(context, seed=4)),
         "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
-        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
-        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch, map": Row(mapped),
+        "watch, touched": Row(mapped, (pygame.K_SPACE, pygame.K_RETURN, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))

@@ -65,7 +65,7 @@ class Settings:
         """Whether a part of a screen stays open."""
         return part in self.opened.split()
 
-    def open(self, part: str) -> None:
+    def unfold(self, part: str) -> None:
         """Open a part of a screen from now on, or close it."""
         self.opened = " ".join(sorted({part}.symmetric_difference(self.opened.split())))
 

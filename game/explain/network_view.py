@@ -181,7 +181,7 @@ class NetworkView:
         """Width for the names on the left and on the right, in points."""
         size = self.name_size
         left, right = (
-            max((typeface.width(name, size, "regular") + 10 for name in names), default=4.0)
+            max((typeface.reach(name, size, "regular") + 10 for name in names), default=4.0)
             for names in (self.inputs, self.outputs)
         )
         return left, right

@@ -14,8 +14,7 @@ from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS
 from game.core import texts
-from game.core.collection import looks_like_item
-from game.core.kept import Kept
+from game.core.shelf import Kept, looks_like_item
 
 DECISION_STEPS: Final = 4  # physics steps per decision of a policy that does not say
 DEFAULT: Final = "modern"

@@ -17,8 +17,7 @@ from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
 from ai.training.messages import FirstLanding, NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
-from game.core.collection import Collection
-from game.core.names import LibraryError
+from game.core.shelf import Collection, LibraryError
 from game.core.worker import Worker, WorkerState
 from game.training.record import EarlierRun, Record, put_beside
 from game.training.run_settings import RunKind

@@ -10,19 +10,17 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition
-from game.drawing.canvas import Canvas, moved
-from game.drawing.tokens import MARGIN, VIEW_SIZE
+from game.drawing.canvas import Canvas
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.actions import Action, Table, answering, hints_of
 from game.ui.context import Context
-from game.ui.hints import Hint, HintRow
+from game.ui.hints import Hint
 from game.ui.widget import OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)
 Direction = tuple[int, int]
 UP, DOWN, LEFT, RIGHT = (0, -1), (0, 1), (-1, 0), (1, 0)
 _ARROWS: Final = {Command.UP: UP, Command.DOWN: DOWN, Command.LEFT: LEFT, Command.RIGHT: RIGHT}
-FOOT: Final = (MARGIN, VIEW_SIZE[1] - 40.0)  # where scenes on a page have their hints
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 # Steps a held direction waits before it repeats, and between repeats.
 _REPEAT_AFTER: Final = 24
@@ -39,11 +37,10 @@ class Form:
     Attributes:
         used: whether a widget used the last event, or it moved the focus.
         in_order: whether the end of a column leads on to the next one, and not back to its beginning.
-        anchor: edges of the view beside which the form stands, as in `Canvas.at`; (0, 0) for the page in the middle.
 
     """
 
-    anchor, in_order = (0, 0), False
+    in_order = False
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
@@ -114,12 +111,22 @@ class Form:
     def focus(self, widget: Widget) -> None:
         self._index = self.widgets.index(widget)
 
+    def find(self, key: str) -> Widget | None:
+        """Return the widget of a key, if there is one."""
+        return next((widget for widget in self.widgets if widget.key == key), None)
+
+    def follow(self, before: Form) -> None:
+        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place."""
+        for widget in self.widgets:
+            if same := before.find(widget.key):
+                widget.warmth = same.warmth
+        if before.focused and self.widgets:
+            place = min(before.widgets.index(before.focused), len(self.widgets) - 1)
+            self.focus(self.find(before.focused.key) or self.widgets[place])
+
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
         """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
         self.used = True
-        if event.type in _MOUSE and self.anchor != (0, 0):
-            (x, y), (right, down) = event.pos, moved(self._context.view, *self.anchor)
-            event = pygame.event.Event(event.type, {**event.dict, "pos": (x - right, y - down)})
         return self._sounding(lambda: self._take(event, actions))
 
     def confirm(self, *, pointed: bool = True) -> Transition | None:
@@ -182,7 +189,6 @@ class Form:
         return None
 
     def draw(self, canvas: Canvas) -> None:
-        canvas = canvas.at(*self.anchor)
         for widget in self.widgets:
             widget.paint(canvas)
 
@@ -270,9 +276,6 @@ class FormScene(Scene):
     @property
     def hints(self) -> list[Hint]:
         return self.form.hints or hints_of(self.actions(), self.context.controls)
-
-    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002
-        return [HintRow(self.hints, FOOT)]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         moves = tab(event) != 0 and not self.takes_tab

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Concatenate, Final, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Concatenate, Final, ParamSpec, TypeVar
 
 import pygame
 
@@ -28,10 +28,12 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
+F = TypeVar("F", bound=ButtonRow | ChoiceRow)
 P = ParamSpec("P")
 Write = Callable[[Cursor], object]
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
 _WORDS: Final = 28.0  # points between two words side by side
+_LOW: Final = 5.0  # points above and below words side by side
 _WHEEL: Final = 48.0  # points for one notch of the mouse's wheel
 
 
@@ -134,15 +136,18 @@ class Column:
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
     slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
-    def words(
-        self, words: Sequence[tuple[str, OnPress]], size: float = TEXT, colour: Colour | None = None
-    ) -> list[ButtonRow]:
+    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT, colour: Colour = MUTE) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        style: dict[str, Any] = {"size": size} | ({"colour": colour} if colour else {})
-        buttons = [self._form.add(ButtonRow(label, press, **style)) for label, press in words]
-        self._widgets += buttons
-        self.add(partial(_write_words, buttons))
-        return buttons
+        return self.flow([ButtonRow(label, press, size=size, colour=colour) for label, press in words])
+
+    def flow(self, widgets: Sequence[F]) -> list[F]:
+        """Add widgets side by side, each as wide as its words, on as many lines as they need."""
+        added = [self._form.add(widget) for widget in widgets]
+        for widget in added:
+            widget.pad = _LOW
+        self._widgets += added
+        self.add(partial(_write_words, added))
+        return added
 
     # Columns
 
@@ -242,13 +247,15 @@ class Panel(Column):
         canvas.pill((right, top, 3, self.box.height * share), MUTE)
 
 
-def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
+def _write_words(widgets: Sequence[ButtonRow | ChoiceRow], cursor: Cursor) -> None:
     left, below = cursor.left, cursor.y
-    for button in buttons:
-        width = min(button.measured(cursor), cursor.width)
+    for widget in widgets:
+        width = min(widget.measured(cursor), cursor.width)
         if left > cursor.left and left + width > cursor.right:
             left, cursor.y = cursor.left, below
         place = cursor.column(left, width)
-        button.lay(place)
+        widget.lay(place)
+        if cursor.canvas and widget.what:
+            cursor.canvas.explain(widget.box, widget.what)
         left, below = left + width + _WORDS, max(below, place.y)
     cursor.y = below

@@ -26,6 +26,7 @@ _ALL: Final = -1  # the word that opens a list, among the numbers of the options
 _FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
+_SHARE: Final = 0.4  # of a line, that a choice among others takes at most
 _SWATCH: Final = 27.0  # points for a piece of a line before a name
 
 
@@ -265,7 +266,7 @@ class ChoiceRow(RowWidget):
 
     """
 
-    _labels, _compact = _LABELS, False
+    _labels = _LABELS
 
     def __init__(
         self,
@@ -283,9 +284,17 @@ class ChoiceRow(RowWidget):
         self._on_open, self._all_word = on_open, all_word
         self._places: dict[int, pygame.FRect] = {}
 
-    def compact(self, labels: float, pad: float) -> None:
-        """Take no more room than the words do, with so many points for the label: for choices over a picture."""
-        self._labels, self.pad, self._compact = labels, pad, True
+    def measured(self, cursor: Cursor) -> float:
+        """Return the width that its words need side by side with others; the label has no column of its own then."""
+        self._labels, words = 0.0, cursor.in_style(self._size)
+        wide = self._width(words, self.options)
+        if self._on_open and wide > _SHARE * cursor.width:
+            wide = self._width(words, (self.options[self.index], self._all_word))
+        return words.measured(self.label) + _WORDS * bool(self.label) + wide + 1
+
+    @staticmethod
+    def _width(words: Cursor, options: Sequence[str]) -> float:
+        return sum(map(words.measured, options)) + _WORDS * (len(options) - 1)
 
     def choose(self, index: int) -> None:
         """Choose an option by its number."""
@@ -305,11 +314,6 @@ class ChoiceRow(RowWidget):
             self.choose(under)
         return None
 
-    def lay(self, cursor: Cursor) -> None:
-        super().lay(cursor)
-        if self._compact and cursor.canvas is None:
-            self.rect.width = round(self.reach + _WORDS / 2)
-
     def shift(self, direction: int) -> bool:
         before = self.index
         self.choose(self.index + direction)
@@ -318,7 +322,7 @@ class ChoiceRow(RowWidget):
     def write(self, cursor: Cursor) -> None:
         words = cursor.in_style(self._size, mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         options = dict(enumerate(self.options))
-        left, wide = cursor.left, sum(map(words.measured, self.options)) + _WORDS * (len(self.options) - 1)
+        left, wide = cursor.left, self._width(words, self.options)
         if self.label:
             beside = cursor.left + max(self._labels, words.measured(self.label) + _WORDS)
             if beside + wide <= cursor.right or self._on_open:
@@ -344,5 +348,5 @@ class ChoiceRow(RowWidget):
         if cursor.canvas is None:
             self._places = places
             ends = max(place.right for place in places.values()) - _WORDS / 2
-            self.reach = 0.0 if self.label and not self._compact else ends - cursor.left
+            self.reach = 0.0 if self.label and self._labels else ends - cursor.left
         cursor.y = words.y + LEADING * self._size

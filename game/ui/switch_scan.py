@@ -51,7 +51,7 @@ class SwitchScan:
 
     def stops(self, scene: Scene, canvas: Canvas) -> list[Stop]:
         """Return what can be chosen: the widgets in their order, and then the hints that a click would run."""
-        form, canvas = _form_of(scene), scene.laid_on(canvas)
+        form, canvas = _form_of(scene), canvas.reading
         confirm = form.confirm if form else None
         found = [stop for widget in (form.widgets if form else ()) for stop in _stops_of(widget)]
         for row in reversed(scene.hint_rows(canvas)):  # the hints of a card come before those of the flight behind it
@@ -99,7 +99,7 @@ class SwitchScan:
         stops = self.stops(scene, canvas)
         if not stops:
             return
-        canvas, box = scene.laid_on(canvas), stops[self.index % len(stops)].box.inflate(16, 6)
+        canvas, box = canvas.reading, stops[self.index % len(stops)].box.inflate(16, 6)
         canvas.outline(box, 8, HUMAN, 1.5)
         if not self._context.settings.reduced_motion:
             left = 1 - self._since / DWELL

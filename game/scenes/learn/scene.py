@@ -187,7 +187,7 @@ class ChapterScene(PanelScene):
             general.button(texts.MORE[opened], self._open_more, size=SMALL + 1)
 
     def _open_more(self) -> None:
-        self.context.settings.open(_MORE)
+        self.context.settings.unfold(_MORE)
         self.context.apply_settings()
         self.build()
 

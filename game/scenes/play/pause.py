@@ -12,7 +12,7 @@ from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.tokens import INK
 from game.explain.explained import Explained
-from game.explain.readouts import READOUTS
+from game.explain.readouts import GAUGES, foot_of
 from game.input.controls import Command
 from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Table
@@ -100,7 +100,7 @@ class FlightPauseScene(PauseScene):
         """Add which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
         panel.aside(head.caption)
-        if not self._flight.challenge.free:
+        if not self._flight.challenge.rules.free:
             panel.text(head.name)
         for words in head.aside:
             panel.aside(words)
@@ -121,9 +121,8 @@ class FlightPauseScene(PauseScene):
         return pygame.FRect(room.left, 28, room.width, min(row.top for row in self.hint_rows(canvas)) - 40)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        low = READOUTS * canvas.whole.scale / canvas.scale + 20
         left, _ = self._between(canvas)
-        return hint_lines(self.hints, canvas, (left, canvas.view.bottom - low), self.most)
+        return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), self.most)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._flight.flown.draw(canvas, 1.0, Head(), whole=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -13,14 +14,14 @@ from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.explain.explained import Explained
-from game.flight import networks, own
-from game.flight.choosers import steered
+from game.flight import codes, networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
-from game.flight.logbook import Records, best_alone
+from game.flight.logbook import Records, ladder_rung
+from game.flight.outcomes import OutcomeCard
 from game.input.controls import Command, translate
 from game.scenes.play.card import ShownCard
-from game.scenes.play.challenge import Challenge, Duel
+from game.scenes.play.challenge import Challenge, Duel, Words
 from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
 from game.scenes.play.free import FreeFlight
@@ -54,8 +55,6 @@ class PlayScene(Scene):
 
     """
 
-    flows = True
-
     def __init__(
         self,
         context: Context,
@@ -73,11 +72,11 @@ class PlayScene(Scene):
         entries = self._records.entries()
         if self._records.problem:
             context.note(self._records.problem)
-        self._best, self._sitting = best_alone(entries), Sitting(entries)
+        self._sitting = Sitting(entries)
         new = seed is None and not context.settings.tutored
         usual = Duel(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
-        self.challenge = challenge or usual
-        self.challenge.recall(entries)
+        ladder_rung(context.settings, entries)
+        self._take(challenge or usual)
         self._load_network()
         self._begin_anew() if seed is None else self._begin(seed)
 
@@ -85,15 +84,24 @@ class PlayScene(Scene):
         """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
         self.flown.hang()
-        other = self.challenge.eases and eased(self._settings) != self.flight.recording.easing
-        if not (self.flown.begun or self.flight.over) and (other or self.challenge.chosen() != self._begun_with):
+        if not (self.flown.begun or self.flight.over) and self._chosen != self._begun_with:
             self._begin(self.flight.recording.seed)
 
+    @property
+    def _chosen(self) -> tuple[object, ...]:
+        """What the player has chosen for the next flight."""
+        settings, rules = self._settings, self.challenge.rules
+        return (settings.three_pads, settings.rung) if rules.free else (), rules.eases and eased(settings)
+
+    def _take(self, challenge: Challenge) -> None:
+        """Take what the next flights are flown as. Help of free flights does not follow into a challenge."""
+        self.challenge = challenge
+        self._helped = self._settings if challenge.rules.free else replace(self._settings, help="off")
+
     def reword(self) -> None:
-        self.challenge.word()
         self.flown.reword()
         if self.ending.card:
-            self.ending.card = self._sitting.card(self.flown.make_card())
+            self.ending.card = self._make_card()
 
     def exit(self) -> None:
         self._stick.release()
@@ -136,20 +144,29 @@ class PlayScene(Scene):
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self.pause()
         self._held_next += self._held_next > 0
-        if self._held_next > _SKIP_ALL and self.challenge.next_hint:
+        if self._held_next > _SKIP_ALL and self.words.next:
             self._end_challenge()
         asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
-        due = self.flown.due(asked)
-        if self.waiting:
-            return None
-        if due:
-            self.flown.prepare()
-            self.flight.step(steered(asked, self.flight.observation) if self._settings.one_switch else asked)
-            self.flown.follow()
-            self._follow_flight()
-        self.flown.sound()
+        happened = self.flown.step(asked)
+        if happened.ended and not self.challenge.rules.again:
+            self._sitting.add(self.flown)
+            self.ending.card = self._make_card()
+            if self._sitting.first:
+                self._sound.play("choose")
+        elif happened.retries:
+            self.retry()
         return None
+
+    def _make_card(self) -> OutcomeCard:
+        card = self.flown.make_card()
+        self._sitting.add_to(card)
+        return card
+
+    @property
+    def words(self) -> Words:
+        """What is said of the flight."""
+        return self.challenge.words(self.flown)
 
     @property
     def _across(self) -> float:
@@ -169,7 +186,7 @@ class PlayScene(Scene):
 
     def _card_actions(self) -> list[Action]:
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
-        hint = self.challenge.copy_hint or texts.CODE_HINT_COPY
+        hint = self.words.copy or texts.CODE_HINT_COPY
         copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
         return [*card_actions(self, self._go_on), *offer, *copy] if self.ending.card else []
 
@@ -190,21 +207,21 @@ class PlayScene(Scene):
 
     def _asking(self, begin: Callable[[], None]) -> Run:
         """Return what a key for another start does: ask first, where more than the present flight would be lost."""
-        stake = self.challenge.stake
-        return partial(self._ask, stake, begin) if stake else begin
+        return partial(self._ask, begin) if self.challenge.rules.staked else begin
 
-    def _ask(self, stake: tuple[str, str], begin: Callable[[], None]) -> Transition:
+    def _ask(self, begin: Callable[[], None]) -> Transition:
         from game.scenes.menus.dialogs import QuestionDialog
 
         answers = [(texts.STAKE_FLY_ON, lambda: None), (texts.STAKE_END, begin)]
-        return Push(QuestionDialog(self, *stake, answers))
+        return Push(QuestionDialog(self, *self.words.stake, answers))
 
     def show_thinking(self) -> None:
         self._settings.show_thinking = not self._settings.show_thinking
         self.context.apply_settings()
 
     def _hand_over(self) -> None:
-        if self.challenge.keeps_stick(self.flight):
+        by_hand = self.flight.chooser.hand is StickHolder.HUMAN
+        if self.challenge.rules.keeps_stick and by_hand:
             return
         if not self.flight.over and self.flight.chooser.hand_over():
             self._sound.play("to_network" if self.flight.chooser.hand is StickHolder.NETWORK else "to_human")
@@ -221,13 +238,17 @@ class PlayScene(Scene):
         return text.format(name=self.network.name, problem=self.network.problem)
 
     def _copy(self) -> None:
-        if self.flown.record:
-            give(self.context, *self.challenge.message(self.flown.record))
+        if (record := self.flown.record) is None:
+            return
+        if line := self.words.result:
+            give(self.context, line, texts.CODE_LINE_COPIED.format(line=line))
+        else:
+            give(self.context, codes.code(record), texts.CODE_COPIED)
 
     @property
     def leaves(self) -> bool:
         """Whether Escape goes straight back: from the card of a challenge, where nothing is lost."""
-        return self.ending.card is not None and not (self.challenge.free or self.challenge.stake)
+        return self.ending.card is not None and not (self.challenge.rules.free or self.challenge.rules.staked)
 
     def pause(self) -> Transition:
         self._away = 0
@@ -239,15 +260,15 @@ class PlayScene(Scene):
             (network, lambda: push("runs", choose=self.choose_network)),
             (pilot, lambda: push("pilots", self._choose_own)),
         ]
-        if self.challenge.next_hint:
+        if self.words.next:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
-        words.append((texts.PAUSE_CHOICES if self.challenge.free else texts.CHOICES_HELP, self._choose))
+        words.append((texts.PAUSE_CHOICES if self.challenge.rules.free else texts.CHOICES_HELP, self._choose))
         return [*words, (texts.ASSISTS_OPEN, lambda: push("settings", "flights"))]
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""
         begun, helped = self.flown.begun, self.flown.helped
-        return push("choices", self, begun=begun, free=self.challenge.free, helped=helped, lack=self._lack)
+        return push("choices", self, begun=begun, free=self.challenge.rules.free, helped=helped, lack=self._lack)
 
     def choose_network(self, name: str) -> None:
         self._settings.model = name
@@ -271,7 +292,7 @@ class PlayScene(Scene):
         ending, ghost = self.ending, self.flown.ghost
         if ending.card is None or ending.shown == 0:
             return None
-        rival = ghost.row(self.flight.env) if ghost and self.challenge.compares else None
+        rival = ghost.row(self.flight.env) if ghost and self.challenge.rules.compares else None
         hints = hints_of(self._card_actions(), self._controls)
         return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints, rival)
 
@@ -297,7 +318,7 @@ class PlayScene(Scene):
         return self.flown.waiting
 
     def _load_network(self) -> None:
-        context, self._loaded_for = self.context, self.challenge.elsewhere
+        context, self._loaded_for = self.context, self.challenge.rules.elsewhere
         settings = context.settings
         shipped, mine = context.models_dir, context.user_dir
         self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._loaded_for)
@@ -309,10 +330,12 @@ class PlayScene(Scene):
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's own."""
         self._stick.begin()
-        if self.challenge.elsewhere != self._loaded_for:
+        if self.challenge.rules.elsewhere != self._loaded_for:
             self._load_network()
-        self._begun_with = self.challenge.chosen()
-        self.flown = flown = FlownFlight(self.context, seed, self.network, self.challenge, spawn)
+        self._begun_with = self._chosen
+        self.flown = flown = FlownFlight(
+            self.context, self._records, self.network, self.challenge, self._helped, seed, spawn
+        )
         self.flight, self.credit, self.ending = flown.flight, flown.credit, flown.ending
 
     def _begin_anew(self) -> None:
@@ -330,66 +353,35 @@ class PlayScene(Scene):
         if card is None or not card.good:
             spawn = "" if card and card.rung is not None else self.flight.recording.spawn
             self._begin(self.flight.recording.seed, spawn)
-        elif self.challenge.fixed:
-            following = self.challenge.following()
-            if following is None:
+        elif self.challenge.rules.fixed:
+            if self.challenge.rules.following is None:
                 return Pop()
-            self.challenge = following
+            self._take(self.challenge.rules.following())
             self._begin(self.flight.recording.seed)
         else:
             self._begin_elsewhere()
         return None
 
     def _begin_elsewhere(self) -> None:
-        self.challenge.skip()
-        self._remember()
-        if self.challenge.through:
+        rules = self.challenge.rules
+        if rules.skip:
+            rules.skip()
+        if rules.through:
             self._end_challenge()
         else:
-            self._begin(self.flight.recording.seed) if self.challenge.fixed else self._begin_anew()
+            self._begin(self.flight.recording.seed) if rules.fixed else self._begin_anew()
 
     def _leave_challenge(self) -> Transition:
         self._end_challenge()
         return Pop()
 
     def _end_challenge(self) -> None:
+        """End the tutorial, which is not offered again; free flights follow."""
         self._held_next = 0
-        self.challenge.leave()
-        self._remember()
-        self.challenge = FreeFlight(self._settings)
-        self.challenge.recall(self._records.entries())
+        self._settings.tutored = True
+        self.context.apply_settings()
+        self._take(FreeFlight(self._settings))
         self._begin_anew()
-
-    # The end of a flight
-
-    def _follow_flight(self) -> None:
-        """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
-        self._remember()
-        if not self.flight.over:
-            return
-        challenge, ending = self.challenge, self.ending
-        ending.follow()
-        if challenge.again():
-            self._write_down()
-            if ending.due:
-                self.retry()
-        elif ending.card is None:
-            self.flown.best = self._best, self._sitting.best_here(self.flight)
-            self._sitting.add(self.flown)
-            ending.card = self._sitting.card(self.flown.make_card())
-            if self._sitting.first:
-                self._sound.play("choose")
-            self._remember()
-            self._write_down()
-
-    def _remember(self) -> None:
-        """Save the pilot's progress in a challenge as soon as it is made."""
-        if self.challenge.remember(self._settings):
-            self.context.apply_settings()
-
-    def _write_down(self) -> None:
-        if self.challenge.kept and (entry := self.flown.write_down(self._records)):
-            self._best = max(self._best, best_alone([entry]))
 
     def _accept_help(self) -> None:
         self.flown.helped.help = "guard"

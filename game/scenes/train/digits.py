@@ -22,7 +22,7 @@ from game.scenes.train.digit_views import ConfusionMatrix
 from game.scenes.train.layout import Layout, Status
 from game.scenes.train.scene import TrainScene
 from game.scenes.train.view import Pointer, View
-from game.training.digit_models import DigitModels, runs_dir
+from game.training.library import DigitModels
 from game.training.run_kind import DIGITS
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer
@@ -69,7 +69,7 @@ class DigitView(View):
 
     @staticmethod
     def collection(user_dir: Path) -> DigitModels:
-        return DigitModels(runs_dir(user_dir))
+        return DigitModels(user_dir)
 
     # What it has come to
 

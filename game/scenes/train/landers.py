@@ -154,6 +154,7 @@ class LanderView(View):
         for word, press, name in (
             (texts.TRAIN_EXPERIMENTS, self.laboratory.open, "experiments"),
             (texts.LESSON_WHY, self._ask_why, "lesson"),
+            (texts.TASTE_NAME, partial(push, "taste"), "taste"),
             (texts.TRAIN_DUEL, self._duel, "duel"),
             (texts.TRAIN_RUNS, self._open_runs, "runs"),
         ):

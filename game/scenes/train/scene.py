@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import pygame
 
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition
+from game.core.shelf import LibraryError
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, LINE, NIGHT0, PANEL, SMALL, TITLE
@@ -63,7 +63,6 @@ class TrainScene(FormScene):
 
     """
 
-    flows = True
     panel: Panel
     _foot: Panel
     start_button: ButtonRow
@@ -105,7 +104,7 @@ class TrainScene(FormScene):
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        self._settings.open(name)
+        self._settings.unfold(name)
         self.context.apply_settings()
 
     def switch(self, column: Column, name: str, words: tuple[str, str], help_: str = "") -> None:
@@ -162,7 +161,7 @@ class TrainScene(FormScene):
         else:
             self.knobs.describe(column)
             column.gap()
-            self.switch(column, MORE, texts.TRAIN_MORE)
+            self.switch(column, MORE, texts.MORE)
             if self.opened(MORE):
                 self._describe_more(column)
             view.describe_last(column)
@@ -326,7 +325,7 @@ class TrainScene(FormScene):
     def _keep(self) -> bool:
         """Put the run among the player's networks under a free name; False, and a note, if that failed."""
         runs = self.run.collection
-        if problem := self._save_as(runs.free_name(self.view.suggestion if self.run.runs else runs.kind.rescued())):
+        if problem := self._save_as(runs.free_name(self.view.suggestion if self.run.runs else runs.rescued_name)):
             self.context.note(problem)
         return not problem
 

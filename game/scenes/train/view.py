@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import pygame
 
-from game.core.collection import Collection
 from game.core.scene import Transition
+from game.core.shelf import Collection
 from game.drawing.canvas import Canvas
 from game.scenes.train.charts import Beside, ChartKind
 from game.scenes.train.layout import Layout, Status

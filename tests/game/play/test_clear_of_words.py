@@ -38,7 +38,7 @@ def test_no_tooltip_of_help_covers_its_words(open_game: Open, monkeypatch: pytes
     driver.write_in(letters)
     for word in HELP:
         driver.frames(3)
-        canvas = driver.top.laid_on(driver.app.canvas)
+        canvas = driver.app.canvas.reading
         driver.click(play(driver)._head.help_boxes(canvas)[word].center)
         driver.frames(2)
         words = play(driver)._head.help_boxes(canvas)  # what else is said may have moved them

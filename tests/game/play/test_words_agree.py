@@ -106,7 +106,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
         assert challenge_of(driver).why in page.words
         return
     page = reading.check(140 if "pace" in settings else 70)  # at half speed the card takes twice as long to come
-    if play(driver).challenge and not play(driver).challenge.kept:
+    if play(driver).challenge and not play(driver).challenge.rules.kept:
         return
     entry = Records(context.user_dir).entries()[-1]
     assert entry.outcome == outcome.name

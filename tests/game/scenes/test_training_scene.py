@@ -16,8 +16,7 @@ from game.scenes.train import scene
 from game.scenes.train.digits import digit_training
 from game.scenes.train.landers import INSIDE
 from game.scenes.train.scene import CHARTS, MORE, TrainScene
-from game.training.digit_models import DigitModels, runs_dir
-from game.training.library import Library
+from game.training.library import DigitModels, Library
 from game.training.record import put_beside
 from game.ui.context import Context
 from tests.ai.training.test_hints import HEALTHY
@@ -36,7 +35,7 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
         for chart in (each for each in driver.top.charts.charts):
             chart.renew()
         driver.frames(1)
-        found = notes.page(driver.top.laid_on(driver.app.canvas)).notes
+        found = notes.page(driver.app.canvas.reading).notes
     return [note.text for note in found], [
         f"{one.text!r} on {other.text!r}"
         for number, one in enumerate(found)
@@ -58,7 +57,7 @@ def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.Mo
 
 def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
     driver = open_game(TrainScene)
-    for name, words in ((MORE, texts.TRAIN_MORE), (CHARTS, texts.TRAIN_MORE_CHARTS), (INSIDE, texts.TRAIN_LOOK)):
+    for name, words in ((MORE, texts.MORE), (CHARTS, texts.TRAIN_MORE_CHARTS), (INSIDE, texts.TRAIN_LOOK)):
         driver.press_on(words[0])
         driver.frames(1)
         assert name in driver.saved()["opened"].split()
@@ -113,7 +112,7 @@ def test_a_run_beside_is_taken_away_by_its_row(open_game: Callable[..., Driver])
 
 def held(folder: Path) -> bool:
     """Whether somebody holds the place of the runs of landers, or of digits, that have no name."""
-    collections = Library(folder), DigitModels(runs_dir(folder))
+    collections = Library(folder), DigitModels(folder)
     free = [each.hold() for each in collections]
     for each in collections:
         each.release()
