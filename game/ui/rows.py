@@ -132,12 +132,8 @@ class ToggleRow(RowWidget):
         self.value = not self.value
         self._on_change(self.value)
 
-    def shift(self, direction: int) -> bool:
-        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
-        if self.value == (direction > 0):
-            return False
+    def advance(self) -> None:
         self.press()
-        return True
 
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)

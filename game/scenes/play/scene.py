@@ -121,10 +121,6 @@ class PlayScene(Scene):
     def takes_switch(self) -> bool:  # type: ignore[override]
         return not self.flight.over
 
-    @property
-    def notes_low(self) -> bool:  # type: ignore[override]
-        return self.waiting or self.flight.over
-
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self.flown.animate()
