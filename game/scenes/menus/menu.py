@@ -104,7 +104,8 @@ class MenuScene(_OverMoon):
         size = SMALL + (TEXT - SMALL) * roomy
         sentences = [texts.MENU[name][1] for name in ROWS]
         if self.form.focused:
-            replace(cursor, width=width, colour=MUTE, size=size).text(sentences[self.form.widgets.index(self.form.focused)])
+            line = replace(cursor, width=width, colour=MUTE, size=size)
+            line.text(sentences[self.form.widgets.index(self.form.focused)])
         longest = max(len(lines(each, size, cursor.weight, width, cursor.scale)) for each in sentences)
         cursor.gap(longest * LEADING * size + STEP + _BETWEEN * roomy)
 

@@ -23,7 +23,7 @@ from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout, TrainingStatus, layout
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import FormScene, Part
+from game.ui.form import Form, FormScene
 from game.ui.panel import Column, Panel
 from game.ui.widget import Widget
 
@@ -70,10 +70,10 @@ class TrainingScene(FormScene, ABC):
 
     def __init__(self, context: Context, run: TrainingRun) -> None:
         super().__init__(context, self._back)
-        self.form.in_order = True
         self.run, self._settings = run, context.settings
         self._was_running = self._alive = False
         self._laid: Hashable = None
+        self._page = ""
         self._layout: Layout | None = None
         self.explained = Explained()
         try:
@@ -169,21 +169,27 @@ class TrainingScene(FormScene, ABC):
 
     def _lay(self) -> None:
         """Describe the panel anew; the focus stays on what has the same name."""
-        form, before, focused = self.form, list(self.form.widgets), self.form.focused
-        scrolled = self.panel.scrolled if self._laid is not None else 0.0
-        body, foot = Part(form), Part(form)
+        before, page, self._page = self.form, self._page, self._shown_page
+        scrolled = self.panel.scrolled if self._laid is not None and page == self._page else 0.0
+        self.form = self.knobs.form = Form(self.context, before.back)
         self.knobs.every = self.opened(KNOBS)
-        self.panel, self._foot = Panel(body), Panel(foot)
+        self.panel, self._foot = Panel(self.form), Panel(self.form)
         self._pointed = self._pointers()
+        for widget, _ in self._pointed:
+            self.form.add(widget)
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        form.replace(before, [*(widget for widget, _ in self._pointed), *body.widgets, *foot.widgets])
-        if focused is not None and focused not in form.widgets:
-            alike = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)
-            form.focus(next(alike, self.start_button))
+        self.form.follow(before, self.start_button)
+        if page != self._page and self.panel.widgets:  # from its top
+            self.form.focus(self.panel.widgets[0])
         self._laid, self._layout = self._rows_key, None
         self.lay_out()
         self.panel.scroll(scrolled)
+
+    @property
+    def _shown_page(self) -> str:
+        """Which page the panel shows, of scenes that have several."""
+        return ""
 
     @property
     def _rows_key(self) -> Hashable:
