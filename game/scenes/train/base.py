@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,10 +20,11 @@ from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.layout import Layout, TrainingStatus, layout
+from game.scenes.train.layout import Layout, TrainingStatus, hint_row, layout
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form import Form, FormScene
+from game.ui.hints import HintRow
 from game.ui.panel import Column, Panel
 from game.ui.widget import Widget
 
@@ -262,6 +263,9 @@ class TrainingScene(FormScene, ABC):
             self.explained.action(),
         ]
 
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        return [hint_row(self._layout, self.hints[:1])] if self._layout else []
+
     @property
     def _back_hint(self) -> str:
         """What Escape does, in a word."""
@@ -382,4 +386,5 @@ class TrainingScene(FormScene, ABC):
     def draw_title(self, canvas: Canvas) -> None:
         """Draw what the run has come to, over the display."""
         assert self._layout is not None
-        self._status.draw(canvas, self._layout, self.hints[:1])
+        self._status.draw(canvas, self._layout)
+        self.draw_hints(canvas)

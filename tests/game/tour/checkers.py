@@ -255,7 +255,7 @@ def _press_all(stop: Stop, driver: Driver, recorder: Recorder) -> None:
         for meaning, place in driver.hints().items():
             driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
             assert recorder.take() == [bound.pop(meaning).key], f"a click on {meaning}"
-        assert not bound or stop.screen in ("DigitsScene", "TrainScene")
+        assert not bound or stop.screen in ("DigitsScene", "TrainScene", "DigitTrainingScene")
 
 
 def the_usual_size_of_text_comes_back(visit: Visit) -> None:
