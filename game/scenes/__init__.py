@@ -15,7 +15,7 @@ ROUTES: Final = {
     "tutorial": "play.starts.tutorial", "descent": "play.starts.descent", "race": "play.starts.race",
     "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "day": "play.starts.day",
     "watch": "watch.scene.WatchScene", "pilots": "watch.pilots.PilotsScene",
-    "train": "train.scene.TrainScene", "runs": "train.networks.NetworksScene",
+    "train": "train.scene.TrainScene", "taste": "taste.scene.TasteScene", "runs": "train.networks.NetworksScene",
     "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",
     "digit_inside": "digits.inside.DigitInsideScene",
     "physics": "physics.scene.PhysicsScene", "physics_step": "physics.step_scene.PhysicsStepScene",

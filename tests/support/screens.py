@@ -13,7 +13,7 @@ from ai.digits.preprocessing import Image, preprocess_strokes
 from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
-from game.flight import sharing
+from game.flight import codes
 from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.scenes.digits.inside import DigitInsideScene
@@ -55,8 +55,8 @@ Make = Callable[[Context], Scene]
 
 def friend(context: Context) -> ReplayScene:
     """The page of a friend's flight."""
-    flight = sharing.shared(flown(context))
-    return ReplayScene(context, sharing.record_of(flight, time.time()), flight)
+    flight = codes.claimed(flown(context))
+    return ReplayScene(context, codes.record_of(flight, time.time()), flight)
 
 
 SCREENS: dict[str, Make] = {

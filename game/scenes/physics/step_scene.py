@@ -179,7 +179,7 @@ class PhysicsStepScene(PanelScene):
         poses = record.after[0] if kind in ("motion", "end") else record.before[0]
         with canvas.clipped(box):
             self._draw_walls(canvas, view)
-            self._outlines.draw(canvas, view, poses, None, held=False)
+            self._outlines.draw(canvas, view, poses)
             if kind == "boxes":
                 self._draw_boxes(canvas, view)
             if pair is None:
