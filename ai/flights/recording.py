@@ -106,7 +106,7 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class SharedFlight:
+class ClaimedFlight:
     """Flight as it is sent to a friend: its recording, and what its pilot claims to have earned."""
 
     recording: Recording

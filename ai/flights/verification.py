@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.flights.recording import AS_IT_IS, End, Recording, SharedFlight
+from ai.flights.recording import AS_IT_IS, ClaimedFlight, End, Recording
 from ai.lander.descent import can_begin, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import PADS, Ground, Pad, hilly
@@ -65,7 +65,7 @@ def day_of(seed: int) -> date | None:
     return date.fromordinal(seed) if 1 <= seed <= date.max.toordinal() else None
 
 
-def in_its_place(flight: SharedFlight) -> bool:
+def in_its_place(flight: ClaimedFlight) -> bool:
     """Whether a flight began where its course begins, with the fuel of that place."""
     recording, course = flight.recording, flight.course
     start = recording.spawn, recording.pads, recording.mission, recording.leg
@@ -118,7 +118,7 @@ def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:
     return Earned(outcome, landing_score(env, slot), medal, int(env.steps[slot]), fuel, (x, y, angle))
 
 
-def is_true(flight: SharedFlight, real: Earned) -> bool:
+def is_true(flight: ClaimedFlight, real: Earned) -> bool:
     """Whether a flight was flown where it says, and really earned what it claims."""
     claim, steps = flight.claim, len(flight.recording.pushes)
     away = max(abs(claimed - flown) for claimed, flown in zip(claim.end, real.end, strict=True))
@@ -126,7 +126,7 @@ def is_true(flight: SharedFlight, real: Earned) -> bool:
     return in_its_place(flight) and alike and away <= TOLERANCE and claim.medal <= real.medal
 
 
-def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
+def verified(flights: Sequence[ClaimedFlight]) -> Iterator[tuple[int, Earned]]:
     """Yield the index of every flight, and what it earned: those of one ground are flown together, in any order."""
     groups = defaultdict[object, list[int]](list)
     for index, flight in enumerate(flights):

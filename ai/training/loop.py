@@ -25,7 +25,6 @@ from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.environment import Env, Floats, StepResult
 from ai.files import count_of, inside, number_of, problem_in, read_json
-from ai.files.knobs import nearest_preset
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
 from ai.run import TRAINING_FILE, Measured, Run
@@ -281,7 +280,7 @@ class Training(Run):
             self.evaluate()
         agent, config = self.agent, self.config
         described = {
-            "env": config.env, **nearest_preset(config, presets_of(config.env)), "seed": self.seed,
+            "env": config.env, **config.described(presets_of(config.env)), "seed": self.seed,
             "decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes,
             "landings": self.env.landings, "seconds": round(self.seconds, 3),
             "best": self.best.to_json() if self.best else None,

@@ -31,7 +31,7 @@ class SavedRun:
     name: str
     folder: Path
     saved: float = 0.0  # seconds since 1970
-    preset: str = ""  # the nearest to its settings
+    preset: str = ""  # that its settings began as
     changes: int = 0  # settings that differ from that
     seed: int = 0
     decisions: int = 0

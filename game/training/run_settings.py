@@ -14,7 +14,7 @@ from typing import Any, Final, Literal
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config, InForce
-from ai.training.experiments import sabotaged
+from ai.training.experiments import named, sabotaged
 from ai.training.session import Session
 from game.core import texts
 from game.core.catalogue import capital
@@ -182,10 +182,12 @@ class RunKind:
         base, sabotage = named
         return sabotaged(self.presets[base], sabotage) if sabotage else self.presets[base]
 
-    def nearest(self, config: Configuration) -> Named:
-        """Return the preset, or sabotage of one, that differs in the fewest fields; of equals, the preset."""
-        every: list[Named] = [(base, sabotage) for sabotage in ("", *self.sabotages) for base in self.presets]
-        return min(every, key=lambda named: len(config.differences(self.config_of(named))))
+    def named(self, config: Configuration) -> Named:
+        """Return the preset, or sabotage of one, that a configuration began as; of other names, the first preset."""
+        base, sabotage = named(config)
+        if base not in self.presets:
+            return next(iter(self.presets)), ""
+        return base, sabotage if sabotage in self.sabotages else ""
 
     def said(self, named: Named) -> tuple[str, str]:
         """Return the label of a preset or a sabotage, and a sentence about it."""
@@ -224,13 +226,13 @@ class RunSettings:
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
         self.in_force: InForce | None = None
-        self.named, self.draft = run_kind.nearest(config), config
+        self.named, self.draft = run_kind.named(config), config
         self.set_config(config, seed)
 
     def set_config(self, config: Configuration, seed: int) -> None:
         """Set the configuration and the seed, without calling `on_change`."""
         if config != self.draft:
-            self.named = self.run_kind.nearest(config)
+            self.named = self.run_kind.named(config)
         self._named_held = self.named
         self.config = self.draft = config
         self.seed = self.draft_seed = seed

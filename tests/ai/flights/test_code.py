@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from ai.flights import code as module
 from ai.flights.code import BEGIN, END, CodeError, code_of, codes_in, flight_of
-from ai.flights.recording import LONGEST, Claim, Easing, Recording, SharedFlight, StickHolder
+from ai.flights.recording import LONGEST, Claim, ClaimedFlight, Easing, Recording, StickHolder
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
@@ -32,7 +32,7 @@ def shared(pushes, hands=None, seed=5, **more):
     """A flight with these pushes, or with the actions of keys, and some claim about it."""
     pushes = [push if isinstance(push, Push) else KEYS[push] for push in pushes]
     recording = Recording(seed, "random", pushes=pushes, hands=hands or [PERSON] * len(pushes), **more)
-    return SharedFlight(recording, Claim(Outcome.LANDED, 84, (0.25, 2.56, -0.0125)))
+    return ClaimedFlight(recording, Claim(Outcome.LANDED, 84, (0.25, 2.56, -0.0125)))
 
 
 def sealed(data):
@@ -90,7 +90,7 @@ def flights(draw):
     numbers = st.integers(-(10**6), 10**6).map(lambda number: number / 10_000)
     claim = Claim(draw(st.sampled_from(Outcome)), draw(st.integers(0, 500)), draw(st.tuples(numbers, numbers, numbers)))
     course = mission or draw(st.sampled_from(["", "daily"]))
-    return SharedFlight(recording, claim, course, draw(st.sampled_from(["", "helped"])))
+    return ClaimedFlight(recording, claim, course, draw(st.sampled_from(["", "helped"])))
 
 
 @settings(max_examples=60, deadline=None)

@@ -285,7 +285,7 @@ NOT_AT = {
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+    "sound", "controls", "flights", "PauseScene", "FlightPauseScene, of a flight",
     "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
     "DigitTrainingScene",
 }  # fmt: skip
