@@ -156,7 +156,7 @@ def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():
     assert not any('"""' in text for _, text in source.lines)
 
 
-@pytest.mark.parametrize("function", [Momentum._fill_step, Training.progress])
+@pytest.mark.parametrize("function", [Momentum._fill_step, Training.progress.fget])
 def test_remarks_for_tools_are_not_shown(function):
     raw = inspect.getsource(function)
     assert "# noqa" in raw or "# fmt" in raw
