@@ -81,13 +81,13 @@ def flown_with(chapter: NeuronChapter, weights: tuple[float, ...], seconds: floa
     """Fly with these weights; return the longest time in sight without a fall, and the largest tilt after 4 seconds."""
     chapter.restart()
     for number, weight in enumerate(weights):
-        chapter.set(number, weight)
+        chapter.model.set(number, weight)
     tilts = []
     for step in range(round(seconds * SECOND)):
         chapter.update()
         if step > 4 * SECOND:
-            tilts.append(float(chapter.env.tilt[0]))
-    return chapter.best[0], max(tilts)
+            tilts.append(float(chapter.model.env.tilt[0]))
+    return chapter.model.best[0], max(tilts)
 
 
 def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subtests: pytest.Subtests):
@@ -96,19 +96,19 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
         best, tilt = flown_with(chapter, HINT, 15)
         assert best > 14
         assert np.degrees(tilt) < 15
-        chapter.push()
+        chapter.model.push()
         for _ in range(10 * SECOND):
             chapter.update()
-        assert chapter.best[0] > 24
+        assert chapter.model.best[0] > 24
         assert chapter.tried
         assert chapter.verdict() == 2
         assert "−4 for tilt" in chapter.why()
-        values = (float(f"{value:.2f}") for value in chapter.sensed[0])
+        values = (float(f"{value:.2f}") for value in chapter.model.sensed[0])
         written = decimal(sum(value * weight for value, weight in zip(values, HINT, strict=True)), 2, "+")
         assert f"The sum is {written}." in chapter._summed(), "what is written adds up"
-        total = float((chapter.sensed[0] * chapter.layer.weights[:, 0]).sum() + chapter.layer.bias[0])
-        assert chapter.output == pytest.approx(np.tanh(total), abs=1e-6)
-        assert chapter.steer == (1 if chapter.output > 0.5 else 2 if chapter.output < -0.5 else 0)
+        total = float((chapter.model.sensed[0] * chapter.model.layer.weights[:, 0]).sum() + chapter.model.layer.bias[0])
+        assert chapter.model.output == pytest.approx(np.tanh(total), abs=1e-6)
+        assert chapter.model.steer == (1 if chapter.model.output > 0.5 else 2 if chapter.model.output < -0.5 else 0)
     for weights in ((-2.0, 0.0, 1.0), (-4.0, -4.0, 2.0)):
         with subtests.test("with both it stays", weights=weights):
             assert flown_with(chapter, weights, GOAL + 1)[0] > GOAL
@@ -117,7 +117,7 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
             best, tilt = flown_with(chapter, weights, 40)
             assert best < GOAL
             assert chapter.verdict() is None
-            assert chapter.end in ("", "drifted")
+            assert chapter.model.end in ("", "drifted")
             assert np.degrees(tilt) < 40
     with subtests.test("without weights nothing was tried"):
         assert flown_with(chapter, (0.0, 0.0, 0.0), 15)[0] < GOAL
@@ -146,15 +146,15 @@ def test_the_plane_shows_what_the_trained_network_answers(made: Made):
     chapter = made(PlaneChapter)
     chapter.update()
     assert not chapter.tried
-    chapter.choose(len(plane.UNITS) - 1)
+    chapter.model.choose(len(plane.UNITS) - 1)
     for _ in range(plane.SPOKEN):
         chapter.update()
     assert chapter.tried
     assert chapter.verdict() is None, "fewer were not tried"
-    assert chapter.results == {8: chapter.right}
-    assert str(chapter.right) in chapter.why()
+    assert chapter.model.results == {8: chapter.model.right}
+    assert str(chapter.model.right) in chapter.why()
     chapter.restart()
-    assert (chapter.tried, chapter.units) == (False, 0)
+    assert (chapter.tried, chapter.model.units) == (False, 0)
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_the_plane_shows_what_the_trained_network_answers(made: Made):
 )  # fmt: skip
 def test_the_fewest_neurons_that_are_enough_are_the_answer(made: Made, right: dict[int, int], answer: int | None):
     chapter = made(PlaneChapter)
-    chapter.results = right
+    chapter.model.results = right
     assert chapter.verdict() == answer
 
 
