@@ -193,7 +193,7 @@ def test_a_finding_comes_by_itself_and_leaving_ends_a_run(open_game: Open, conte
     driver = open_game(ChapterScene, "choice")
     scene = driver.top
     scene.begin()
-    for action in (scene.chapter.worst, scene.chapter.best):
+    for action in (scene.chapter.model.worst, scene.chapter.model.best):
         scene.chapter.begin_with(action)
         driver.skip(500)
     assert Progress(driver.app.context.settings).done("choice")
