@@ -34,7 +34,6 @@ from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
@@ -105,9 +104,8 @@ FLOWN: dict[str, Make] = {
     **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
+    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below.context, below, begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
 }

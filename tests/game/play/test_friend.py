@@ -122,7 +122,10 @@ def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, re
     assert isinstance(scene.challenge, Race)
     assert scene.flown.ghost.name == texts.FRIEND_NAME
     end(driver, TOO_FAST)
-    driver.key(pygame.K_k)
+    driver.frames(60)
+    driver.key(pygame.K_t)
+    driver.press_on(texts.MORE[0])
+    driver.press_on(texts.CODE_COPY)
     assert driver.said == texts.CODE_COPIED
     answer = codes.flight_in(clipboard[-1])
     assert answer.recording == scene.flight.recording
