@@ -118,6 +118,7 @@ class App:
         self._last = time_now
         for _ in range(steps):
             self.notes.update()
+            self.canvas.row = self.notes.height(self.canvas.reading)
             if problem := self.settings_writer.problem():
                 self.notes.show(problem)
             self._guarded(self.scenes.update)
@@ -294,7 +295,7 @@ class App:
         self.canvas.explained.clear()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._guarded(lambda: self.scan.draw(self.scenes.top, self.canvas))
-        self.notes.draw(self.canvas, low=self.scenes.top.notes_low)
+        self.notes.draw(self.canvas.reading)
         self.window.flip()
 
     def _save_screenshot(self) -> None:

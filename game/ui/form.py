@@ -45,7 +45,7 @@ class Form:
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
         self.widgets: list[Widget] = []
-        self._context, self._on_back = context, on_back
+        self._context, self.back = context, on_back
         self._index = 0
         self._held_steps = 0
         self._held_direction: Command | None = None
@@ -72,7 +72,7 @@ class Form:
         return Action(Command.CONFIRM, self.confirm, hint)
 
     def goes_back(self, hint: str) -> Action:
-        return Action(Command.BACK, self._on_back, hint)
+        return Action(Command.BACK, self.back, hint)
 
     @property
     def hints(self) -> list[Hint]:
@@ -115,14 +115,18 @@ class Form:
         """Return the widget of a key, if there is one."""
         return next((widget for widget in self.widgets if widget.key == key), None)
 
-    def follow(self, before: Form) -> None:
-        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place."""
+    def follow(self, before: Form, otherwise: Widget | None = None) -> None:
+        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place.
+
+        `otherwise` has the focus where its key is gone.
+        """
+        self.manager.mouse_position = before.manager.mouse_position
         for widget in self.widgets:
             if same := before.find(widget.key):
                 widget.warmth = same.warmth
         if before.focused and self.widgets:
             place = min(before.widgets.index(before.focused), len(self.widgets) - 1)
-            self.focus(self.find(before.focused.key) or self.widgets[place])
+            self.focus(self.find(before.focused.key) or otherwise or self.widgets[place])
 
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
         """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
@@ -173,7 +177,7 @@ class Form:
         elif command is Command.CONFIRM and widget:
             return self._press()
         elif command in (Command.BACK, Command.PAUSE):
-            return self._on_back()
+            return self.back()
         else:
             self.used = False
         return None
@@ -287,31 +291,6 @@ class FormScene(Scene):
     def draw_hints(self, canvas: Canvas) -> None:
         for row in self.hint_rows(canvas):
             row.draw(canvas)
-
-
-class Part:
-    """Part of a form whose widgets a panel of its own lays out; the form has them once they are added to it."""
-
-    def __init__(self, form: Form) -> None:
-        self._form, self.widgets = form, list[Widget]()
-        self.controls, self.in_order = form.controls, True
-
-    @property
-    def focused(self) -> Widget | None:
-        focused = self._form.focused
-        return focused if focused in self.widgets else None
-
-    def add(self, widget: W) -> W:
-        widget.join(self._form.manager)
-        self.widgets.append(widget)
-        return widget
-
-    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Replace some adjacent widgets by others, of the form as well."""
-        self._form.replace(old, new)
-        place = self.widgets.index(old[0]) if old else len(self.widgets)
-        self.widgets = [each for each in self.widgets if each not in old]
-        self.widgets[place:place] = new
 
 
 def _reading(widget: Widget | None) -> object:

@@ -72,7 +72,7 @@ class TasteScene(PanelScene):
         panel.text(lambda: self._sentence, size=TITLE)
         panel.gap(6)
         panel.widget(PairRow(self.pair, self.answer, self._height, lambda: self._waits))
-        panel.words([(texts.TASTE_AGAIN, self.pair.again), (texts.TRAIN_MORE[self._opened], self._open)])
+        panel.words([(texts.TASTE_AGAIN, self.pair.again), (texts.MORE[self._opened], self._open)])
         panel.gap(6)
         if self._opened:
             self._describe_more(panel)
@@ -105,7 +105,7 @@ class TasteScene(PanelScene):
         return self.context.settings.is_open(_MORE)
 
     def _open(self) -> None:
-        self.context.settings.open(_MORE)
+        self.context.settings.unfold(_MORE)
         self.context.apply_settings()
         self.build()
 
@@ -163,8 +163,8 @@ class TasteScene(PanelScene):
             Action(Command.LEFT, partial(self.answer, FIRST), texts.TASTE_THIS),
             Action(Command.DOWN, partial(self.answer, NEITHER), texts.TASTE_NEITHER),
             Action(Command.RIGHT, partial(self.answer, SECOND), texts.TASTE_THAT),
-            Action(pygame.K_BACKSPACE, self._take_back, texts.TASTE_BACK, gamepad=Command.PREVIOUS),
-            Action(pygame.K_r, self.pair.again, gamepad=Command.NEXT),
+            Action(pygame.K_BACKSPACE, self._take_back, texts.TASTE_BACK, gamepad=Command.HANDOVER),
+            Action(Command.RETRY, self.pair.again),
             self.form.confirms(""),
             self.form.goes_back(""),
         ]

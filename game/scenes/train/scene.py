@@ -76,6 +76,10 @@ class TrainScene(TrainingScene):
     # Rows
 
     @property
+    def _shown_page(self) -> str:
+        return self.laboratory.page
+
+    @property
     def _key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
