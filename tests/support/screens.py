@@ -49,6 +49,7 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play
 from tests.support.lessons import lesson_of
+from tests.support.tastes import raised
 
 Make = Callable[[Context], Scene]
 
@@ -65,6 +66,7 @@ SCREENS: dict[str, Make] = {
     "MissionsScene": MissionsScene,
     "WatchScene": lambda context: WatchScene(context, seed=1),
     "TrainScene": TrainScene,
+    "TasteScene": raised,
     "DigitsScene": DigitsScene,
     "DigitTrainingScene": DigitTrainingScene,
     "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
