@@ -21,7 +21,7 @@ ROUTES: Final = {
     "physics": "physics.scene.PhysicsScene", "physics_step": "physics.step_scene.PhysicsStepScene",
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
-    "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
+    "pause": "play.pause.PauseScene",
     "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.list.LearnScene",
     "one_file": "learn.one_file.OneFileScene", "chapter": "learn.scene.ChapterScene",
     "lesson": "lesson.scene.LessonScene",

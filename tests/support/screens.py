@@ -34,7 +34,6 @@ from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
@@ -50,6 +49,7 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play
 from tests.support.lessons import lesson_of
+from tests.support.tastes import raised
 
 Make = Callable[[Context], Scene]
 
@@ -66,6 +66,7 @@ SCREENS: dict[str, Make] = {
     "MissionsScene": MissionsScene,
     "WatchScene": lambda context: WatchScene(context, seed=1),
     "TrainScene": TrainScene,
+    "TasteScene": raised,
     "DigitsScene": DigitsScene,
     "DigitTrainingScene": digit_training,
     "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
@@ -105,9 +106,8 @@ FLOWN: dict[str, Make] = {
     **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
+    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below.context, below, begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
 }

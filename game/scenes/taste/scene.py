@@ -163,8 +163,8 @@ class TasteScene(PanelScene):
             Action(Command.LEFT, partial(self.answer, FIRST), texts.TASTE_THIS),
             Action(Command.DOWN, partial(self.answer, NEITHER), texts.TASTE_NEITHER),
             Action(Command.RIGHT, partial(self.answer, SECOND), texts.TASTE_THAT),
-            Action(pygame.K_BACKSPACE, self._take_back, texts.TASTE_BACK, gamepad=Command.PREVIOUS),
-            Action(pygame.K_r, self.pair.again, gamepad=Command.NEXT),
+            Action(pygame.K_BACKSPACE, self._take_back, texts.TASTE_BACK, gamepad=Command.HANDOVER),
+            Action(Command.RETRY, self.pair.again),
             self.form.confirms(""),
             self.form.goes_back(""),
         ]

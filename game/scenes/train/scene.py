@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,12 +20,13 @@ from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.scenes.train.charts import FEW_CHARTS, TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.landers import LanderView
-from game.scenes.train.layout import Layout, layout
+from game.scenes.train.layout import Layout, hint_row, is_low, layout
 from game.training.run import PACES, TrainingRun
 from game.training.run_settings import RunSettings
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import FormScene, Part
+from game.ui.form import Form, FormScene
+from game.ui.hints import HintRow
 from game.ui.panel import Column, Panel
 
 if TYPE_CHECKING:
@@ -69,10 +70,10 @@ class TrainScene(FormScene):
 
     def __init__(self, context: Context, view: type[View] = LanderView, resume: Path | None = None) -> None:
         super().__init__(context, self._back)
-        self.form.in_order = True
         self.run = run = TrainingRun(view.kind, view.collection(context.user_dir))
         self._settings, self._was_running, self._frame, self._alive = context.settings, False, 0, False
         self._laid: Hashable = None
+        self._page: Hashable = False
         self._seen: Hashable = None
         self._layout: Layout | None = None
         self.landed: tuple[int | None, ...] = ()
@@ -116,21 +117,27 @@ class TrainScene(FormScene):
 
     def _lay(self) -> None:
         """Describe the panel anew; the focus stays on what has the same name."""
-        form, before, focused = self.form, list(self.form.widgets), self.form.focused
-        scrolled = self.panel.scrolled if self._laid is not None else 0.0
-        body, foot = Part(form), Part(form)
-        self.panel = Panel(body)
-        self._foot = self.panel if self._low else Panel(foot)
+        before, page, self._page = self.form, self._page, self._shown_page
+        scrolled = self.panel.scrolled if self._laid is not None and page == self._page else 0.0
+        self.form = self.knobs.form = Form(self.context, before.back)
+        self.panel = Panel(self.form)
+        self._foot = self.panel if self._low else Panel(self.form)
         self._pointed = self.view.pointers()
+        for widget, _ in self._pointed:
+            self.form.add(widget)
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        form.replace(before, [*(widget for widget, _ in self._pointed), *body.widgets, *foot.widgets])
-        if focused is not None and focused not in form.widgets:
-            like = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)
-            form.focus(next(like, self.start_button))
+        self.form.follow(before, self.start_button)
+        if page != self._page and self.panel.widgets:  # from its top
+            self.form.focus(self.panel.widgets[0])
         self._laid, self._layout = self._rows_key, None
         self.lay_out()
         self.panel.scroll(scrolled)
+
+    @property
+    def _shown_page(self) -> Hashable:
+        """Which page the panel shows."""
+        return self.view.page or self.knobs.page
 
     @property
     def _room(self) -> pygame.FRect:
@@ -239,6 +246,9 @@ class TrainScene(FormScene):
         """Go back; start or pause, as the button says."""
         back = texts.HINT_BACK if self.view.moment is None else texts.REWIND_BACK
         return [self.form.goes_back(back), Action(Command.HANDOVER, self._toggle), self.explained.action()]
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        return [hint_row(self._layout, self.hints[:1])] if self._layout else []
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Go on explaining; scroll the panel by the wheel; everything else is the view's and the form's."""
@@ -422,4 +432,6 @@ class TrainScene(FormScene):
     def draw_title(self, canvas: Canvas) -> None:
         """Draw what the run has come to, over the display."""
         assert self._layout is not None
-        self.status.draw(canvas, self._layout, self.hints[:1])
+        self.status.draw(canvas, self._layout)
+        if not is_low(self._layout):
+            self.draw_hints(canvas)

@@ -79,7 +79,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(
     path = tmp_path / "strange.bin"
     refused = texts.CODE_REFUSED
     for content, why in (
-        (b"tranq3-000-over", refused["damaged"]), (b"tranq3-000", refused["cut"]),
+        (b"tranq4-000-over", refused["damaged"]), (b"tranq4-000", refused["cut"]),
         (b"tranq-000-over", refused["older"]), (b"hello", refused["none"]), (b"\xff\xfe", refused["none"]),
         (b"x" * 2_000_000, ""),
     ):  # fmt: skip
@@ -97,7 +97,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(
     driver.key(pygame.K_v, pygame.KMOD_LCTRL)
     assert (driver.top_name, driver.said) == ("MenuScene", texts.CODE_PASTE_EMPTY)
     monkeypatch.setattr(pygame.scrap, "get_text", lambda: clipboard[-1])
-    paste(driver, "tranq3-000", clipboard)
+    paste(driver, "tranq4-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=refused["cut"])
 
 
@@ -122,7 +122,10 @@ def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, re
     assert isinstance(scene.challenge, Race)
     assert scene.flown.ghost.name == texts.FRIEND_NAME
     end(driver, TOO_FAST)
-    driver.key(pygame.K_k)
+    driver.frames(60)
+    driver.key(pygame.K_t)
+    driver.press_on(texts.MORE[0])
+    driver.press_on(texts.CODE_COPY)
     assert driver.said == texts.CODE_COPIED
     answer = codes.flight_in(clipboard[-1])
     assert answer.recording == scene.flight.recording
