@@ -79,7 +79,7 @@ class Explained:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the tooltip of the area that is pointed at, or that is the next to be explained."""
-        areas = canvas.explained
+        areas = [area for area in canvas.explained if area.box.colliderect(canvas.view)]
         self.stepping &= bool(areas)
         if self.stepping:
             area = areas[self._number % len(areas)]

@@ -282,10 +282,6 @@ class Walk:
         driver.frames(3)
         page = self._written.turn(driver.app.canvas)
         driver.app.draw()
-        message = driver.app.notes.text
-        if page.notes and page.notes[-1].text in message:  # for five seconds its panel lies over what stands there
-            cover = page.panels[-1]
-            page.notes = [note for note in page.notes if note.text in message or not cover.colliderect(note.box)]
         for note in page.notes:
             if note.code:
                 continue

@@ -12,7 +12,7 @@ import pygame
 
 from ai.files import free_path
 from ai.flights.code import code_of
-from ai.flights.recording import SharedFlight
+from ai.flights.recording import ClaimedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
@@ -26,7 +26,7 @@ from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
 from game.explain import readouts
 from game.explain.explained import Explained
 from game.export.film import Export, films_dir
-from game.flight import networks, sharing
+from game.flight import codes, networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.foresight import SixFutures
@@ -64,7 +64,7 @@ class ReplayScene(WorldScene):
 
     takes_tab = True
 
-    def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
+    def __init__(self, context: Context, record: Record, friend: ClaimedFlight | None = None) -> None:
         super().__init__(context)
         self.record, self.friend = record, friend
         self._pace = TimeScale()
@@ -242,7 +242,7 @@ class ReplayScene(WorldScene):
 
     def _copy(self) -> None:
         """Copy the flight as a code; a friend's as it came, with its own claim."""
-        code = code_of(self.friend) if self.friend else sharing.code(self.record)
+        code = code_of(self.friend) if self.friend else codes.code(self.record)
         give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
@@ -303,8 +303,8 @@ class ReplayScene(WorldScene):
     def _titles(self) -> tuple[str, str]:
         """Return what is replayed, and how it ended or what it earned."""
         if self.friend:
-            where, real = sharing.where(self.friend), self.flight_replay.earned
-            line = texts.FRIEND_LINE.format(where=where, earned=sharing.words(real)) if real else where
+            where, real = codes.where(self.friend), self.flight_replay.earned
+            line = texts.FRIEND_LINE.format(where=where, earned=codes.words(real)) if real else where
             return texts.FRIEND_TITLE, line
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))

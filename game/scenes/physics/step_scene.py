@@ -39,6 +39,7 @@ _NORMAL: Final = 46.0  # points of a normal
 _HEAD: Final = 6.0
 _INSIDE: Final = 44.0  # points from a contact to the letter of a body that cannot move
 _APART: Final = 20.0  # between two words of the field
+_LINES, _ROWS = 2, 3  # of a sentence and of a legend, for which there is always room
 # By the kind of a piece, the words of the field that name what is shown.
 _TERMS: Final = {
     "axes": ("axis",),
@@ -79,8 +80,7 @@ class PhysicsStepScene(PanelScene):
         self._kinds = list(dict.fromkeys(piece.kind for piece in self.pieces))
         words, chosen = [texts.STEP_PIECES[kind][0] for kind in self._kinds], self._kinds.index(self.piece.kind)
         self._tabs = panel.choice("", words, chosen, self._turn_to_kind)
-        panel.text(lambda: self.record.sentence(self.piece, self.pair))
-        panel.add(self._write_terms)
+        panel.add(self._write_sentence)
         last = len(self.pieces) - 1
         count = partial(_counted, last + 1)
         self._slider = panel.slider(texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1, figure=count)
@@ -144,11 +144,18 @@ class PhysicsStepScene(PanelScene):
         super().draw(canvas, alpha)
         self.explained.draw(canvas)
 
-    # The words of the field
+    # What is said
 
     @property
     def _terms(self) -> tuple[str, ...]:
         return _TERMS.get(self.piece.kind, ())
+
+    def _write_sentence(self, cursor: Cursor) -> None:
+        """Write what happens, in plain words; what stands below stays where it is."""
+        below = cursor.y + _LINES * LEADING * TEXT
+        cursor.text(self.record.sentence(self.piece, self.pair))
+        cursor.y = max(cursor.y, below)
+        self._write_terms(cursor)
 
     def _write_terms(self, cursor: Cursor) -> None:
         """Write the field's words for what is shown, each explained to whoever points at it."""
@@ -179,7 +186,7 @@ class PhysicsStepScene(PanelScene):
         poses = record.after[0] if kind in ("motion", "end") else record.before[0]
         with canvas.clipped(box):
             self._draw_walls(canvas, view)
-            self._outlines.draw(canvas, view, poses, None, held=False)
+            self._outlines.draw(canvas, view, poses)
             if kind == "boxes":
                 self._draw_boxes(canvas, view)
             if pair is None:
@@ -295,11 +302,13 @@ class PhysicsStepScene(PanelScene):
         return legend
 
     def _write_legend(self, cursor: Cursor) -> None:
+        below = cursor.y + _ROWS * LEADING * SMALL
         for colour, length, words in self._legend():
             if cursor.canvas:
                 y = cursor.in_style(SMALL).baseline - 4
                 _arrow(cursor.canvas, (cursor.left, y), (cursor.left + length, y), colour, 2)
             cursor.styled(words, SMALL, MUTE, indent=_ARROW + 12)
+        cursor.y = max(cursor.y, below)
 
 
 def _counted(total: int, place: float) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
+
+import pygame
 
 from game.core import texts
 from game.flight.flight import StickHolder
@@ -22,16 +25,19 @@ def flight_actions(scene: PlayScene) -> list[Action]:
     taken = flight.chooser.hand is StickHolder.NETWORK
     hints = {
         Command.HANDOVER: texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER,
-        Command.CHOICES: texts.CHOICES_HINT if rules.free else "",
         Command.NEXT: words.next,
-        Command.RETRY: texts.HINT_RETRY,
+        Command.RETRY: texts.HINT_RETRY if scene.flown.begun else "",
         Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
     }
     if flight.over or not flight.chooser.network or (rules.keeps_stick and not taken):
         hints[Command.HANDOVER] = ""
-    calm, mouse = scene.waiting or flight.over, scene.context.controls.mouse_in_use
-    named = hints if calm else _IN_FLIGHT if mouse else ()
-    return [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
+    named: Iterable[Command] = hints if scene.waiting else ()
+    if not (scene.waiting or flight.over) and scene.context.controls.mouse_in_use:
+        named = _IN_FLIGHT
+    table = [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
+    thinks = texts.HINT_THINKS if scene.waiting and flight.chooser.network and not taken else ""
+    shows = Action(pygame.K_F1, scene.show_thinking, thinks, Command.MODE)
+    return [*table, shows, Action(Command.MODE, scene.show_thinking)]
 
 
 def card_actions(scene: PlayScene, go_on: Run) -> list[Action]:

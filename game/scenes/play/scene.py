@@ -14,7 +14,7 @@ from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.explain.explained import Explained
-from game.flight import networks, own, sharing
+from game.flight import networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records, ladder_rung
@@ -32,8 +32,8 @@ from game.scenes.play.tutorial import Tutorial
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
 from game.ui.context import Context
+from game.ui.form import Form
 from game.ui.hints import HintRow
-from game.ui.widget import OnPress
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
@@ -66,7 +66,7 @@ class PlayScene(Scene):
         super().__init__(context)
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._stick = FlightControls(context.controls, context.settings)
-        self.explained = Explained()
+        self.form, self.explained = Form(context), Explained()
         self._away = self._held_next = 0  # steps since the window was left, and the key for what comes next is held
         self._records = Records(context.user_dir)
         entries = self._records.entries()
@@ -109,6 +109,12 @@ class PlayScene(Scene):
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         self.explained.handle_event(event)
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            canvas = self.context.reading()
+            self.form.lay_keys(self.hint_rows(canvas), canvas)
+            outcome = self.form.handle_event(event)
+            if self.form.used:
+                return outcome
         if event.type in _RELEASES:
             self._held_next = 0
         elif translate(event) is Command.NEXT:
@@ -117,8 +123,8 @@ class PlayScene(Scene):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         if event.type in _INTERRUPTS:
             self.flown.hang()
-        if self.flown.helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
-            if self.flown.helped.help != "off" and (lack := self._lack):
+        if self._helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
+            if self.flown.helped.help != "off" and (lack := self.lack):
                 self.context.note(lack)
             return None
         self._stick.take(event)
@@ -130,10 +136,6 @@ class PlayScene(Scene):
     @property
     def takes_switch(self) -> bool:  # type: ignore[override]
         return not self.flight.over
-
-    @property
-    def notes_low(self) -> bool:  # type: ignore[override]
-        return self.waiting or self.flight.over
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -178,24 +180,25 @@ class PlayScene(Scene):
 
     def actions(self) -> Table:
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
-        explain = [Action(key, self.show_thinking) for key in (pygame.K_F1, Command.MODE)]
         if self.ending.shown == 0:
-            return [*flight_actions(self), Action(Command.CONFIRM, self.ending.hurry), *explain]
+            return [*flight_actions(self), Action(Command.CONFIRM, self.ending.hurry)]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
-        return [*self._card_actions(), *flight_actions(self), Action(Command.CONFIRM, self._go_on), *space, *explain]
+        return [*self._card_actions(), *flight_actions(self), Action(Command.CONFIRM, self._go_on), *space]
 
     def _card_actions(self) -> list[Action]:
+        if self.ending.card is None:
+            return []
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
-        hint = self.words.copy or texts.CODE_HINT_COPY
-        copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
-        return [*card_actions(self, self._go_on), *offer, *copy] if self.ending.card else []
+        watch = [Action(pygame.K_t, self._watch, texts.CARD_WATCH, Command.STEP)] if self.flown.record else []
+        copy = [Action(pygame.K_k, self._copy, self.words.copy, Command.NEXT)] if self.words.result else []
+        return [*card_actions(self, self._go_on), *offer, *watch, *copy]
 
     @property
     def runs(self) -> dict[Command, Run]:
         """What each command does in a flight, whether or not a hint names it."""
         return {
             Command.HANDOVER: self._hand_over,
-            Command.CHOICES: self._choose,
+            Command.CHOICES: self.pause,
             Command.NEXT: self._asking(self._begin_elsewhere),
             Command.RETRY: self._asking(self.retry),
             Command.PAUSE: Pop if self.leaves else self.pause,
@@ -230,7 +233,7 @@ class PlayScene(Scene):
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     @property
-    def _lack(self) -> str:
+    def lack(self) -> str:
         """Why the network, or the player's own pilot, cannot help; empty if it can, or if none is asked to."""
         if not self.flight.chooser.shares or self.flight.chooser.copilot is not None:
             return ""
@@ -238,12 +241,17 @@ class PlayScene(Scene):
         return text.format(name=self.network.name, problem=self.network.problem)
 
     def _copy(self) -> None:
-        if (record := self.flown.record) is None:
-            return
-        if line := self.words.result:
-            give(self.context, line, texts.CODE_LINE_COPIED.format(line=line))
-        else:
-            give(self.context, sharing.code(record), texts.CODE_COPIED)
+        line = self.words.result
+        give(self.context, line, texts.CODE_LINE_COPIED.format(line=line))
+
+    def _watch(self) -> Transition | None:
+        """Watch the flight that has ended; from there, it can be saved as a picture that moves, or sent to a friend."""
+        return push("replay", self.flown.record)
+
+    @property
+    def _helps(self) -> bool:
+        """Whether help can be chosen now, by its words."""
+        return self.flown.helps and not self.flight.over
 
     @property
     def leaves(self) -> bool:
@@ -252,23 +260,7 @@ class PlayScene(Scene):
 
     def pause(self) -> Transition:
         self._away = 0
-        return push("flight_pause", self, retry=self.retry, more=self._pause_words)
-
-    def _pause_words(self) -> list[tuple[str, OnPress]]:
-        network, pilot = networks.pause_labels(self.network.name)
-        words: list[tuple[str, OnPress]] = [
-            (network, lambda: push("runs", choose=self.choose_network)),
-            (pilot, lambda: push("pilots", self._choose_own)),
-        ]
-        if self.words.next:
-            words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
-        words.append((texts.PAUSE_CHOICES if self.challenge.rules.free else texts.CHOICES_HELP, self._choose))
-        return [*words, (texts.ASSISTS_OPEN, lambda: push("settings", "flights"))]
-
-    def _choose(self) -> Transition | None:
-        """Open the choices for the next flights; in a challenge, few can be changed."""
-        begun, helped = self.flown.begun, self.flown.helped
-        return push("choices", self, begun=begun, free=self.challenge.rules.free, helped=helped, lack=self._lack)
+        return push("flight_pause", self)
 
     def choose_network(self, name: str) -> None:
         self._settings.model = name
@@ -277,7 +269,7 @@ class PlayScene(Scene):
         self.context.apply_settings()
         self._change_network()
 
-    def _choose_own(self, path: Path | None) -> None:
+    def choose_own(self, path: Path | None) -> None:
         own.take(self.context, path)
         self._change_network()
 
@@ -371,7 +363,7 @@ class PlayScene(Scene):
         else:
             self._begin(self.flight.recording.seed) if rules.fixed else self._begin_anew()
 
-    def _leave_challenge(self) -> Transition:
+    def leave_challenge(self) -> Transition:
         self._end_challenge()
         return Pop()
 

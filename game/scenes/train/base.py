@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,10 +20,11 @@ from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.layout import Layout, TrainingStatus, layout
+from game.scenes.train.layout import Layout, TrainingStatus, hint_row, layout
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import FormScene, Part
+from game.ui.form import Form, FormScene
+from game.ui.hints import HintRow
 from game.ui.panel import Column, Panel
 from game.ui.widget import Widget
 
@@ -70,10 +71,10 @@ class TrainingScene(FormScene, ABC):
 
     def __init__(self, context: Context, run: TrainingRun) -> None:
         super().__init__(context, self._back)
-        self.form.in_order = True
         self.run, self._settings = run, context.settings
         self._was_running = self._alive = False
         self._laid: Hashable = None
+        self._page = ""
         self._layout: Layout | None = None
         self.explained = Explained()
         try:
@@ -169,21 +170,27 @@ class TrainingScene(FormScene, ABC):
 
     def _lay(self) -> None:
         """Describe the panel anew; the focus stays on what has the same name."""
-        form, before, focused = self.form, list(self.form.widgets), self.form.focused
-        scrolled = self.panel.scrolled if self._laid is not None else 0.0
-        body, foot = Part(form), Part(form)
+        before, page, self._page = self.form, self._page, self._shown_page
+        scrolled = self.panel.scrolled if self._laid is not None and page == self._page else 0.0
+        self.form = self.knobs.form = Form(self.context, before.back)
         self.knobs.every = self.opened(KNOBS)
-        self.panel, self._foot = Panel(body), Panel(foot)
+        self.panel, self._foot = Panel(self.form), Panel(self.form)
         self._pointed = self._pointers()
+        for widget, _ in self._pointed:
+            self.form.add(widget)
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        form.replace(before, [*(widget for widget, _ in self._pointed), *body.widgets, *foot.widgets])
-        if focused is not None and focused not in form.widgets:
-            alike = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)
-            form.focus(next(alike, self.start_button))
+        self.form.follow(before, self.start_button)
+        if page != self._page and self.panel.widgets:  # from its top
+            self.form.focus(self.panel.widgets[0])
         self._laid, self._layout = self._rows_key, None
         self.lay_out()
         self.panel.scroll(scrolled)
+
+    @property
+    def _shown_page(self) -> str:
+        """Which page the panel shows, of scenes that have several."""
+        return ""
 
     @property
     def _rows_key(self) -> Hashable:
@@ -255,6 +262,9 @@ class TrainingScene(FormScene, ABC):
             Action(Command.HANDOVER, self._toggle),
             self.explained.action(),
         ]
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        return [hint_row(self._layout, self.hints[:1])] if self._layout else []
 
     @property
     def _back_hint(self) -> str:
@@ -376,4 +386,5 @@ class TrainingScene(FormScene, ABC):
     def draw_title(self, canvas: Canvas) -> None:
         """Draw what the run has come to, over the display."""
         assert self._layout is not None
-        self._status.draw(canvas, self._layout, self.hints[:1])
+        self._status.draw(canvas, self._layout)
+        self.draw_hints(canvas)

@@ -19,7 +19,7 @@ from game.ui.widget import Widget
 
 _DIGITS: Final = 10
 _ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
-_COUNT: Final = 10.5  # the size of a cell's figure
+_COUNT: Final = 12.0  # the size of a cell's figure
 _COLUMNS: Final = 4  # of misread digits
 _GAP: Final = 8.0
 

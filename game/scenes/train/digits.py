@@ -112,10 +112,9 @@ class DigitTrainingScene(TrainingScene):
         nowhere, charts = (0, 0, 1, 1), self.charts
         pointers: list[Pointer] = [(VirtualPointer(nowhere, charts.follow), lambda: charts.box)]
         if self._shows_misread:
-            if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone
-                before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
-                self.matrix.set(before.confusion)
-                self.matrix.cell = before.cell
+            before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
+            self.matrix.set(before.confusion)
+            self.matrix.cell = before.cell
             pointers.append((self.matrix, lambda: self._matrix))
         return pointers
 

@@ -46,7 +46,7 @@ class KnobsPanel:
     """
 
     def __init__(self, form: Form, settings: RunSettings) -> None:
-        self._form, self.settings = form, settings
+        self.form, self.settings = form, settings
         self._run_kind = run_kind = settings.run_kind
         chance = KnobDescription(SEED, "", label(SEED), texts.KNOB_SEED, False, "slider", _SEEDS)
         self._descriptions = {each.name: each for each in (*run_kind.knob_descriptions, chance)}
@@ -150,7 +150,7 @@ class KnobsPanel:
     def _knob(self, name: str) -> Knob:
         """Return the widget of a setting: the same one as long as it is on the screen, so that a drag goes on."""
         knob = self._knobs.get(name)
-        if knob is None or knob not in self._form.widgets:
+        if knob is None or knob not in self.form.widgets:
             description = self._descriptions[name]
             knob = KINDS[description.kind](description, self.turn, self._focus_answer)
             self._knobs[name] = knob
@@ -179,7 +179,7 @@ class KnobsPanel:
 
     def _write_help(self, cursor: Cursor) -> None:
         """Write what was refused, or what the knob in focus does, and how to restore it."""
-        settings, knob = self.settings, self._form.focused
+        settings, knob = self.settings, self.form.focused
         if settings.problem:
             cursor.styled(settings.problem, SMALL, cursor.palette.warn)
         elif isinstance(knob, Knob):
@@ -194,7 +194,7 @@ class KnobsPanel:
         if not knob.live:
             cursor.aside(texts.KNOBS_NEW_RUN)
         if knob.changed:
-            controls = self._form.controls
+            controls = self.form.controls
             key = texts.KNOBS_CLICK if controls.mouse_in_use else controls.word(Command.RETRY)
             if cursor.canvas:
                 hint = Hint(key, texts.KNOBS_BACK_TO.format(value=figure(knob.home)))
@@ -207,8 +207,8 @@ class KnobsPanel:
     def _focus_answer(self) -> None:
         """Move the focus to the button that applies, if there is one."""
         answers = (texts.KNOBS_APPLY, texts.KNOBS_UNDO)
-        if answer := next((widget for widget in self._form.widgets if widget.label in answers), None):
-            self._form.focus(answer)
+        if answer := next((widget for widget in self.form.widgets if widget.label in answers), None):
+            self.form.focus(answer)
 
     def _apply(self) -> None:
         self.settings.apply()

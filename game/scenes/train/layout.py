@@ -64,6 +64,15 @@ def layout(view: pygame.FRect, charts: int) -> Layout:
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
 
 
+def _title_width(place: Layout) -> float:
+    return min(_WIDEST, place.display.width - 2 * _TITLE[0])
+
+
+def hint_row(place: Layout, hints: Sequence[Hint]) -> HintRow:
+    """Return the hints that stand beside the title."""
+    return HintRow(hints, (_TITLE[0] + _title_width(place) - 16, _TITLE[1] + 30), from_right=True)
+
+
 class TrainingStatus(NamedTuple):
     """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
 
@@ -72,17 +81,15 @@ class TrainingStatus(NamedTuple):
     figure: str
     words: str
 
-    def draw(self, canvas: Canvas, place: Layout, hints: Sequence[Hint]) -> None:
+    def draw(self, canvas: Canvas, place: Layout) -> None:
         """Draw the title over the display, and the share that succeeds, large."""
-        left, top = _TITLE
-        width = min(_WIDEST, place.display.width - 2 * left)
+        (left, top), width = _TITLE, _title_width(place)
         size = min(max(_FIGURE[2] * place.swarm.height, _FIGURE[0]), _FIGURE[1])
         cursor = Cursor(left + 16, top + 10, width - 32, canvas.scale)
         self._write(cursor, size)
         box = (left, top, width, cursor.y - top + 8)
         canvas.panel(box, 1.0)
         self._write(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), size)
-        HintRow(hints, (left + width - 16, top + 30), from_right=True).draw(canvas)
 
     def _write(self, cursor: Cursor, size: float) -> None:
         cursor.styled(self.title, TITLE)

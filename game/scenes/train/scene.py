@@ -76,6 +76,10 @@ class TrainScene(TrainingScene):
     # Rows
 
     @property
+    def _shown_page(self) -> str:
+        return self.laboratory.page
+
+    @property
     def _key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened = self.inside.opened and len(self.run.history) > 0
@@ -145,6 +149,7 @@ class TrainScene(TrainingScene):
         for name in (INSIDE, CHARTS, KNOBS):
             self.switch(column, name)
         column.button(texts.TRAIN_EXPERIMENTS, self.laboratory.open).pad = 3.0
+        column.button(texts.TASTE_NAME, lambda: push("taste")).pad = 3.0
         column.button(texts.TRAIN_RUNS, self._open_runs).pad = 3.0
         column.gap(8)
         column.line()

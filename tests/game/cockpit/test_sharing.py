@@ -279,4 +279,4 @@ def test_words_that_nobody_knows_in_the_settings_fly_as_usual(open_game: Open, c
     assert not play(driver).flight.chooser.shared
     assert driver.app.canvas.zoom == 1.0
     driver.key(pygame.K_c)
-    assert driver.top_name == "ChoicesScene"
+    assert driver.top_name == "FlightPauseScene"

@@ -78,7 +78,7 @@ def test_keyboard_works_every_widget(page: tuple[Driver, Page]):
 def test_pad_works_every_widget(page: tuple[Driver, Page]):
     game, scene = page
     down, right = pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_RIGHT
-    for button in (pygame.CONTROLLER_BUTTON_A, down, right, down, right, down, right):
+    for button in (pygame.CONTROLLER_BUTTON_A, down, right, pygame.CONTROLLER_BUTTON_A, down, right, down, right):
         game.button(button)
     assert scene.log == ["go", True, pytest.approx(0.6), 1]
 
