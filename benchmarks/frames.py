@@ -68,6 +68,7 @@ from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
+from game.scenes.train.landers import LanderView
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
@@ -122,6 +123,11 @@ def rows() -> dict[str, Row]:
 
     play = Row(lambda context: PlayScene(context, seed=4), FLOWN)
 
+    def mapped(context: Context) -> Scene:
+        scene = WatchScene(context, seed=4)
+        scene.world.policy_map.on = True
+        return scene
+
     def heap(context: Context) -> Scene:
         return PhysicsScene(context, "heap")
 
@@ -153,8 +159,8 @@ def rows() -> dict[str, Row]:
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         "watch": Row(lambda context: WatchScene(context, seed=4)),
         "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
-        "watch, map": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m,)),
-        "watch, touched": Row(lambda context: WatchScene(context, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
+        "watch, map": Row(mapped),
+        "watch, touched": Row(mapped, (pygame.K_SPACE, pygame.K_RETURN, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
@@ -195,8 +201,9 @@ def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassif
 def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
-    scene.laboratory.chosen = Chosen("rate_times_100")
-    scene._split("rate_times_100")
+    assert isinstance(scene.view, LanderView)
+    scene.view.laboratory.chosen = Chosen("rate_times_100")
+    scene.view._split_now("rate_times_100")
     return scene
 
 

@@ -1,16 +1,14 @@
 """How long it takes to learn to land, beside stable-baselines3's DQN on the same lander.
 
     python -m benchmarks.learning [--seeds 10] [--seconds 60] [--rival-seeds 3] [--rival-seconds 300]
-    python -m benchmarks.learning --runs 30 120 [--seeds 5] [--preset modern] [--set NAME=VALUE ...]
+                                 [--preset modern] [--set NAME=VALUE ...]
 
 Ours is the modern preset, whose settings were tuned for this lander. The rival's were not: it has those that its
 authors tuned for Gymnasium's lunar lander, and flies ours through Gymnasium, one decision at a time, from the same
 spawns. Every second of training (the rival: every ten) the network flies 2,000 random validation spawns greedily, one
 that is taught hard spawns 1,000 of those as well, and the best so far is kept. A share counts as reached when the best
 lands it of the random ones; then, and not before, it flies 2,000 test spawns, which had no say in anything, and the
-table shows what it lands of those. `--runs` measures what is kept after so many seconds instead, by 500 and 250
-validation flights, on random and on hard test spawns; networks of the first two thirds are not tried. Seconds are
-processor time on one thread, of training alone.
+table shows what it lands of those. Seconds are processor time on one thread, of training alone.
 """
 
 import os
@@ -25,7 +23,6 @@ import time
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
-from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any
@@ -40,7 +37,6 @@ from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, evaluate
 
-VALIDATION_FLIGHTS = 500  # as a run flies them
 STOPPING_FLIGHTS = 2000  # more: of 500, a network that lands 98.5 % lands 99 % once in four looks
 TEST_FLIGHTS = 2000
 SHARES = (0.95, 0.99)
@@ -61,7 +57,6 @@ class Kept:
     seconds: float
     decisions: int
     test: Evaluation
-    hard: Evaluation | None = None
 
 
 Checkpoint = tuple[float, int, Pilot, Callable[[], Pilot]]  # seconds, decisions, the pilot, how to keep it
@@ -80,12 +75,6 @@ def followed(
         yield seconds, decisions, kept, best
 
 
-def validated(pilot: Pilot, task: LanderTask | None = None, flights: int = VALIDATION_FLIGHTS) -> Evaluation:
-    """Fly the starts that choose the best network: those of its task, by default random ones."""
-    fly = task.evaluate if task else evaluate
-    return fly(pilot, flights, VALIDATION_SEED)
-
-
 def race(
     training: Iterator[Checkpoint], limit: float, task: LanderTask | None = None, shares: tuple[float, ...] = SHARES
 ) -> tuple[list[Kept | None], float]:
@@ -94,8 +83,9 @@ def race(
     What lands of the test spawns decides neither when to stop nor what is kept.
     """
     reached: list[Kept | None] = [None] * len(shares)
-    validate = partial(validated, task=task, flights=STOPPING_FLIGHTS)
-    for seconds, decisions, pilot, best in followed(training, validate):
+    fly = task.evaluate if task else evaluate
+    scored = followed(training, lambda pilot: fly(pilot, STOPPING_FLIGHTS, VALIDATION_SEED))
+    for seconds, decisions, pilot, best in scored:
         ended = seconds >= limit or best.success >= max(shares)
         if ended or any(old is None and best.success >= share for old, share in zip(reached, shares, strict=True)):
             kept = Kept(seconds, decisions, evaluate(pilot, TEST_FLIGHTS, TEST_SEED))
@@ -104,21 +94,6 @@ def race(
         if ended:
             break
     return reached, kept.test.success
-
-
-def kept_after(training: Iterator[Checkpoint], moments: list[float], task: LanderTask) -> Iterator[Kept]:
-    """Yield what is kept after so many seconds, for each of the moments, which rise.
-
-    Networks from before two thirds of the first moment are not tried.
-    """
-    waiting = sorted(moments)
-    tried = (each for each in training if each[0] >= 2 / 3 * min(moments))
-    for seconds, decisions, pilot, _ in followed(tried, partial(validated, task=task)):
-        if seconds >= waiting[0]:
-            test, hard = (evaluate(pilot, TEST_FLIGHTS, TEST_SEED, spawn) for spawn in ("random", "hard"))
-            yield Kept(waiting.pop(0), decisions, test, hard)
-        if not waiting:
-            break
 
 
 def ours(seed: int, config: Config = PRESETS["modern"]) -> Iterator[Checkpoint]:
@@ -209,39 +184,21 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     print(f"| times as long | {' | '.join(ratios)} | |")
 
 
-def tabulate(arguments: argparse.Namespace, config: Config) -> None:
-    """Print what is kept after runs of given lengths."""
-    print("| seed | after | decisions | random spawns | hard spawns | takes | burns | switches a second |")
-    print("|---|---|---|---|---|---|---|---|")
-    for seed in range(arguments.seeds):
-        for kept in kept_after(ours(seed, config), arguments.runs, LanderTask(config)):
-            test, hard = kept.test, kept.hard
-            assert hard is not None
-            print(
-                f"| {seed} | {kept.seconds:g} s | {kept.decisions / 1000:,.0f}k | {test.success:.2%}"
-                f" | {hard.success:.2%} | {test.mean_time or np.nan:.2f} s | {test.mean_fuel or np.nan:.2f} s"
-                f" | {test.switches:.1f} |",
-                flush=True,
-            )
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--rival-seeds", type=int, default=3)
     parser.add_argument("--rival-seconds", type=float, default=300.0)
-    parser.add_argument("--runs", type=float, nargs="+", metavar="SECONDS")
     parser.add_argument("--preset", default="modern", choices=PRESETS)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     arguments = parser.parse_args()
     config = configured(PRESETS[arguments.preset], arguments.changes)
     versions = [f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
-    if not arguments.runs:
-        rivals = ("stable-baselines3", "torch", "gymnasium")
-        versions += [f"{name} {version(name)}" for name in rivals if find_spec(name.replace("-", "_"))]
+    rivals = ("stable-baselines3", "torch", "gymnasium")
+    versions += [f"{name} {version(name)}" for name in rivals if find_spec(name.replace("-", "_"))]
     print(f"{', '.join(versions)}; {arguments.seeds} seeds of ours\n")
-    (tabulate if arguments.runs else compare)(arguments, config)
+    compare(arguments, config)
 
 
 if __name__ == "__main__":

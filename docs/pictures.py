@@ -46,7 +46,7 @@ from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
 HELD = 12  # frames that a key is held
-EIGHT_UNITS = {5: pygame.K_n, 30: pygame.K_RIGHT, 60: pygame.K_RIGHT, 90: pygame.K_RIGHT}  # of chapter 2, tried
+EIGHT_UNITS = {5: pygame.K_RETURN, 30: pygame.K_RIGHT, 60: pygame.K_RIGHT, 90: pygame.K_RIGHT}  # of chapter 2, tried
 
 
 def lesson(context: Context) -> LessonScene:
@@ -59,12 +59,19 @@ def lesson(context: Context) -> LessonScene:
     return LessonScene(context, explanations.explain(slot=0))
 
 
+def mapped(context: Context) -> Scene:
+    """Watch, with its sky coloured."""
+    scene = WatchScene(context, seed=4)
+    scene.world.policy_map.on = True
+    return scene
+
+
 # Name, scene, and what is pressed at which frame until the picture is taken.
 PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...] = (
     ("menu", MenuScene, {}, 200),
     ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
     ("watch", partial(WatchScene, seed=3, many=True), {}, 260),
-    ("map", partial(WatchScene, seed=4), {30: pygame.K_m}, 110),
+    ("map", mapped, {}, 110),
     ("descent", partial(PlayScene, seed=4, challenge=Descent()), dict.fromkeys(range(5, 160, HELD), pygame.K_UP), 100),
     ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
@@ -82,6 +89,7 @@ SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {
     "cockpit": Settings(help="guide", three_pads=True),
+    "train": Settings(slow_runs=False, lesson_offered=True),
 }
 
 MOVING = "flight"

@@ -18,10 +18,10 @@ from typing import Any, Final
 from ai.cli.command_line import readable
 from ai.files import brief, read_text
 from ai.flights.code import codes_in
-from ai.flights.recording import SharedFlight
+from ai.flights.recording import ClaimedFlight
 from ai.flights.verification import Earned, is_true, verified
 from game.core import texts
-from game.flight import sharing
+from game.flight import codes
 
 _LARGEST: Final = 64_000_000  # bytes of a file
 _STDIN: Final = Path("-")
@@ -35,11 +35,11 @@ def verify(arguments: argparse.Namespace) -> int:
     listed: list[dict[str, Any]] = []
     flights = _flights(arguments.files)
     while portion := list(islice(flights, _PORTION)):
-        sound = [flight for _, flight in portion if isinstance(flight, SharedFlight)]
+        sound = [flight for _, flight in portion if isinstance(flight, ClaimedFlight)]
         real = dict(verified(sound))
         number = 0
         for place, flight in portion:
-            if isinstance(flight, SharedFlight):
+            if isinstance(flight, ClaimedFlight):
                 row, line = _judged(place, flight, real[number])
                 number += 1
             else:
@@ -56,18 +56,18 @@ def verify(arguments: argparse.Namespace) -> int:
     return int(counts["true"] == 0 or counts["wrong"] + counts["refused"] > 0)
 
 
-def _judged(place: str, flight: SharedFlight, real: Earned) -> tuple[dict[str, Any], str]:
+def _judged(place: str, flight: ClaimedFlight, real: Earned) -> tuple[dict[str, Any], str]:
     """Return a flight's row and its line."""
     claim, true = flight.claim, is_true(flight, real)
     row = {
-        "place": place, "verdict": "true" if true else "wrong", "where": sharing.where(flight),
+        "place": place, "verdict": "true" if true else "wrong", "where": codes.where(flight),
         "outcome": real.outcome.name, "points": real.points, "medal": real.medal, "seconds": round(real.seconds, 3),
         "fuel": round(real.fuel, 3), "claimed": {"outcome": claim.outcome.name, "points": claim.points},
     }  # fmt: skip
     if not true:
-        row["why"] = sharing.why_wrong(flight, real)
+        row["why"] = codes.why_wrong(flight, real)
     verdict = texts.VERIFY_TRUE if true else texts.VERIFY_WRONG.format(why=row["why"])
-    words = sharing.words(real)
+    words = codes.words(real)
     return row, texts.VERIFY_LINE.format(place=place, where=row["where"], earned=words, verdict=verdict)
 
 
@@ -76,7 +76,7 @@ def _refused(place: str, why: str) -> tuple[dict[str, Any], str]:
     return {"place": place, "verdict": "refused", "reason": why}, texts.VERIFY_REFUSED.format(place=place, reason=why)
 
 
-def _flights(paths: list[Path]) -> Iterator[tuple[str, SharedFlight | str]]:
+def _flights(paths: list[Path]) -> Iterator[tuple[str, ClaimedFlight | str]]:
     """Yield every flight, or why it is refused, and its place: the file, and the number of its code there."""
     for path in paths:
         if path == _STDIN:
@@ -105,7 +105,7 @@ def _files(path: Path) -> list[Path]:
     return sorted(file for file in path.iterdir() if file.suffix in _SUFFIXES and file.is_file())
 
 
-def _flights_in(file: Path, read: Callable[[], str]) -> Iterator[tuple[str, SharedFlight | str]]:
+def _flights_in(file: Path, read: Callable[[], str]) -> Iterator[tuple[str, ClaimedFlight | str]]:
     try:
         text = read()
     except OSError as error:
@@ -115,5 +115,5 @@ def _flights_in(file: Path, read: Callable[[], str]) -> Iterator[tuple[str, Shar
         yield str(file), texts.CODE_REFUSED["none"]
         return
     alone = len(list(islice(codes_in(text), 2))) < 2
-    for number, flight in enumerate(sharing.flights_in(text), 1):
+    for number, flight in enumerate(codes.flights_in(text), 1):
         yield str(file) if alone else f"{file}:{number}", flight

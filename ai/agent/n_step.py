@@ -23,12 +23,12 @@ class NStep:
 
     def __init__(self, n: int, discount: float) -> None:
         self.n, self.discount = n, discount
-        self._start(0, 0)
+        self._start(0, 0, ())
 
-    def _start(self, slots: int, num_features: int) -> None:
+    def _start(self, slots: int, num_features: int, paid: tuple[int, ...]) -> None:
         self._states: Floats = np.zeros((self.n, slots, num_features), dtype=np.float32)
         self._actions: Ints = np.zeros((self.n, slots), dtype=np.intp)
-        self._returns: Floats = np.zeros((self.n, slots), dtype=np.float32)
+        self._returns: Floats = np.zeros((self.n, slots, *paid), dtype=np.float32)
         self._open: Bools = np.zeros((self.n, slots), dtype=bool)
 
     def add(
@@ -36,16 +36,17 @@ class NStep:
     ) -> tuple[Transition, Ints]:
         """Take one decision of every slot; return the m transitions that are now complete, and their slots (m,).
 
-        `state` and `next_state` are (slots, features), the others (slots,). `terminal` marks a next state without
-        value, `ended` any end of an episode. Slots that have ended and wait for a reset must not be passed on with a
-        new decision.
+        `state` and `next_state` are (slots, features), the others (slots,); rewards of k kinds are (slots, k).
+        `terminal` marks a next state without value, `ended` any end of an episode. Slots that have ended and wait for a
+        reset must not be passed on with a new decision.
         """
         if self._states.shape[1:] != state.shape:
-            self._start(*state.shape)
+            self._start(len(state), state.shape[1], reward.shape[1:])
         for rows, newest in ((self._states, state), (self._actions, action), (self._returns, 0.0), (self._open, True)):
             rows[:-1], rows[-1] = rows[1:], newest
         age = np.arange(self.n - 1, -1, -1)[:, None]  # decisions ago
-        self._returns += np.float32(self.discount) ** age.astype(np.float32) * reward * self._open
+        worth = np.float32(self.discount) ** age.astype(np.float32) * self._open
+        self._returns += worth.reshape(worth.shape + (1,) * (reward.ndim - 1)) * reward
         complete = self._open & ((age == self.n - 1) | ended)
         self._open &= ~complete
         row, slot = complete.nonzero()  # oldest first: a pruned buffer loses the oldest

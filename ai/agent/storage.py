@@ -41,8 +41,9 @@ VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
-_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
-KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_ALONE: Final = FolderKind(FORMAT, (AGENT_FILE, OPTIMIZER_FILE, *NETWORK.within("online"), *NETWORK.within("target")))
+_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
+KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *_OF_A_RUN, *_ALONE.within(LAST)))
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
-    from ai.sweep.plan import Plan
+    from ai.sweep.design import Design
     from ai.sweep.study import Study
 
 _SEEDS: Final = (1, 1000)  # of a trial
 _BUDGET: Final = (1, 10**12)
-# Options of a plan, which a study keeps: as they are, and what they are made into.
-_PLAN: Final = "seeds", "metric", "search", "decisions", "every", "validation", "seed"
-_OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "preset", "changes", "digits")
+# Options of a design, which a study keeps: as they are, and what they are made into.
+_DESIGN: Final = "seeds", "metric", "search", "decisions", "every", "validation", "seed"
+_OF_A_NEW_ONE: Final = (*_DESIGN, "knobs", "space", "preset", "changes", "digits")
 
 
 def add_commands(commands: Any) -> None:
@@ -57,13 +57,13 @@ def _sweep(arguments: argparse.Namespace) -> int:
     place = _place(arguments)
     if arguments.address is not None:
         answering(arguments.address)  # before there is a study
-    study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
+    study = _resumed(arguments, place) if arguments.resume else Study.create(place, _design(arguments))
     with study.claimed():
         stop, lost = ([], {}) if study.complete else _run(study, arguments.address)
     print("\n".join(cli.readable(line, len(line)) for line in study.table().splitlines()), flush=True)
     if not study.complete:
         named = f" --env {arguments.env}" if ":" in (arguments.env or "") else ""
-        kept = f"{len(study.trials)} of {study.plan.trials} trials are kept"
+        kept = f"{len(study.trials)} of {study.design.trials} trials are kept"
         cli.say(f"{kept}; to go on: sweep --study {arguments.study} --resume{named}")
     if lost and not stop:
         numbers, why = ", ".join(map(str, sorted(lost))), "; ".join(sorted(set(lost.values())))
@@ -79,7 +79,7 @@ def _run(study: Study, address: str | None) -> tuple[list[int], dict[int, str]]:
     with joined(address) as workers, cli.stoppable() as stop:
         from ai.sweep.driver import run
 
-        with cli.progress_bar(study.plan.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
+        with cli.progress_bar(study.design.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
 
             def report(under_way: int) -> None:
                 finished, best = len(study.trials) - bar.n, next(iter(study.ranked()), None)
@@ -88,7 +88,7 @@ def _run(study: Study, address: str | None) -> tuple[list[int], dict[int, str]]:
                 bar.update(finished)
                 if finished and bar.disable:
                     bar.n = len(study.trials)
-                    cli.fail(f"{bar.n} of {study.plan.trials} trials: {words or 'none has a result yet'}")
+                    cli.fail(f"{bar.n} of {study.design.trials} trials: {words or 'none has a result yet'}")
 
             return stop, run(study, workers, stop, report)
 
@@ -121,25 +121,25 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 
     if given := [name for name in _OF_A_NEW_ONE if getattr(arguments, name) is not None]:
         named = ", ".join(f"--{'set' if name == 'changes' else name}" for name in given)
-        raise ValueError(f"a study that has begun keeps its plan: {named} can only be given without --resume")
+        raise ValueError(f"a study that has begun keeps its design: {named} can only be given without --resume")
     study = Study.load(place)
-    config = study.plan.config
+    config = study.design.config
     env = config.env if isinstance(config, Config) else None
     if arguments.env not in (None, env):
-        raise ValueError(f"a study that has begun keeps its plan: it is not for --env {arguments.env}")
+        raise ValueError(f"a study that has begun keeps its design: it is not for --env {arguments.env}")
     if env is not None:
         check_env(env, arguments.env)
-    if arguments.trials not in (None, study.plan.trials):
+    if arguments.trials not in (None, study.design.trials):
         study.extend(arguments.trials)
     if not study.complete:
         check_ready(config)
     return study
 
 
-def _plan(arguments: argparse.Namespace) -> Plan:
-    """Return the plan of a new study; raises ValueError or OSError for what makes no sense."""
+def _design(arguments: argparse.Namespace) -> Design:
+    """Return the design of a new study; raises ValueError or OSError for what makes no sense."""
     from ai.cli.train import digit_config, lander_config
-    from ai.sweep.plan import Plan, knob_space, read_space
+    from ai.sweep.design import Design, knob_space, read_space
     from ai.sweep.trial import check_ready
 
     arguments.changes, arguments.epochs = arguments.changes or [], None
@@ -156,5 +156,5 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     if arguments.digits and arguments.knobs is None:
         for name in ("epochs", "held_out"):  # they say how long each trains, and what it is measured with
             space.pop(name, None)
-    given = {name: getattr(arguments, name) for name in (*_PLAN, "trials")}
-    return Plan.of(config, space, **{name: value for name, value in given.items() if value is not None})
+    given = {name: getattr(arguments, name) for name in (*_DESIGN, "trials")}
+    return Design.of(config, space, **{name: value for name, value in given.items() if value is not None})

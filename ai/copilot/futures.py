@@ -235,7 +235,8 @@ class Lookahead:
         env = self._begin(start)
         flies, landed = np.ones(len(asked), dtype=bool), np.zeros(len(asked), dtype=bool)
         flown, grounded = np.zeros((2, len(asked)), dtype=np.intp)  # decisions, in all and at last on the ground
-        shares, states = [], [_states(env)]
+        shares: list[Doubles] = []
+        states = [_states(env)]
         while flies.any():
             seen = self.route.observe(env, self.pilot) if self.route else env.observe_for(self.pilot)
             action = self.pilot.act(seen, held=env.actions).copy()

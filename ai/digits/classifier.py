@@ -19,7 +19,8 @@ DIGITS_FILE: Final = CONFIG  # of a classifier's folder; its network is in a fol
 NETWORK: Final = "network"
 FORMAT: Final = "tranquility digits"
 VERSION: Final = 1
-KIND: Final = FolderKind(FORMAT, ("training.json", "last.npz", "history.npz"), {NETWORK: NETWORK_KIND})
+_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
+KIND: Final = FolderKind(FORMAT, (CONFIG, *_OF_A_RUN, *NETWORK_KIND.within(NETWORK)))
 DIGITS: Final = 10
 _BATCH: Final = 250  # images that a large network reads at a time: more only need more memory
 

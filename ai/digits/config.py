@@ -118,15 +118,16 @@ def build_digit_network(config: DigitConfig, rng: np.random.Generator) -> Neural
 DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
     "modern": DigitConfig(),
     # The shipped modern network: wider, longer, and taught by hands that write as MNIST's writers seldom do.
-    "thorough": DigitConfig(epochs=14, filters=(32, 96), ema_decay=0.999, drawn=0.1),
+    "thorough": DigitConfig(preset="thorough", epochs=14, filters=(32, 96), ema_decay=0.999, drawn=0.1),
     "classic": DigitConfig(
-        learning_rate=3e-3, cost="mse", label_smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
-        output_activation=True, dropout=0.0, augmentation=0.8, unaugmented=0.2, epochs=60, batch_size=100,
+        preset="classic", learning_rate=3e-3, cost="mse", label_smoothing=0.0, convolutions=False, hidden=(100, 50),
+        activation="tanh", output_activation=True, dropout=0.0, augmentation=0.8, unaugmented=0.2, epochs=60,
+        batch_size=100,
     ),
     # The classic network as it was first described: all 60,000 images once, and plain steps.
     "as-described": DigitConfig(
-        learning_rate=0.2, final_learning_rate=0.2, warm_up_epochs=0.0, epochs=1, batch_size=500, optimizer="sgd",
-        cost="mse", label_smoothing=0.0, ema_decay=0.0, held_out=0, convolutions=False, hidden=(100, 50),
-        activation="tanh", output_activation=True, dropout=0.0, augmentation=0.0,
+        preset="as-described", learning_rate=0.2, final_learning_rate=0.2, warm_up_epochs=0.0, epochs=1, batch_size=500,
+        optimizer="sgd", cost="mse", label_smoothing=0.0, ema_decay=0.0, held_out=0, convolutions=False,
+        hidden=(100, 50), activation="tanh", output_activation=True, dropout=0.0, augmentation=0.0,
     ),
 }  # fmt: skip

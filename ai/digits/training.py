@@ -30,7 +30,6 @@ from ai.files import (
     read_as,
     read_json,
 )
-from ai.files.knobs import nearest_preset
 from ai.nn import OPTIMIZERS, Array, ModelFormatError
 from ai.run import TRAINING_FILE, Measured, Run
 
@@ -212,7 +211,7 @@ class DigitTraining(Run):
         best = self.best_classifier()
         epochs, seconds = self.step // self.steps_per_epoch, round(self.seconds, 3)
         described = {
-            **nearest_preset(self.config, DIGIT_PRESETS), "seed": self.seed, "step": self.step, "epochs": epochs,
+            **self.config.described(DIGIT_PRESETS), "seed": self.seed, "step": self.step, "epochs": epochs,
             "seconds": seconds, "held_out": self.best, "kept_epoch": self.best_epoch, "history": [*self.history],
         }  # fmt: skip
         if final:

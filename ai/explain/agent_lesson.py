@@ -20,7 +20,7 @@ from ai.agent.replay import ReplayBuffer, Transition
 from ai.environment import Floats, Ints
 from ai.explain.learning_step import Step, recorded_step
 from ai.explain.recorder import RETURN, Function, Line
-from ai.nn import SGD, NeuralNetwork
+from ai.nn import SGD, CostFunctions, NeuralNetwork
 
 _PART: Final = 0.2  # of the way to its target: the first step of a memory learned alone, were the network a line
 
@@ -157,20 +157,23 @@ def _twin(before: Before, cell: Transition, row: int) -> DeepQAgent:
 class LearnedAlone:
     """One output of a copy of a network that learns its target, which stands still, and nothing else.
 
-    No other example is in its batch, and plain gradient descent carries nothing on.
+    No other example is in its batch, and plain gradient descent on the squared error carries nothing on.
 
     Attributes:
         network: the copy.
         way: the output before the first step and after each, in the network's scale.
         outputs: (outputs,) all of them now.
+        rate: the learning rate of all steps.
 
     """
 
     def __init__(self, network: NeuralNetwork, state: Floats, output: int, target: float) -> None:
         self.network, self._state, self._output, self.target = network.copy(), state[None], output, target
+        self.network.cost = CostFunctions.use_mse()
         self.outputs = self.network.predict(self._state)[0].copy()
         self.way = [float(self.outputs[output])]
-        self._optimizer = SGD(self._rate())
+        self.rate = self._rate()
+        self._optimizer = SGD(self.rate)
 
     @property
     def error(self) -> float:
@@ -188,6 +191,10 @@ class LearnedAlone:
         self.network.train_batch(self._state, self._wanted(), self._optimizer)
         self.outputs = self.network.predict(self._state)[0].copy()
         self.way.append(float(self.outputs[self._output]))
+
+    def recorded(self) -> Step:
+        """Learn it once more, and return the step."""
+        return recorded_step(self.step, self.network, self._optimizer, (), 0)[1]
 
     def _wanted(self) -> Floats:
         wanted: Floats = self.network.predict(self._state).copy()

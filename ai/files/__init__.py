@@ -40,6 +40,7 @@ from ai.files.schema import (
     Count,
     Duration,
     OneOf,
+    OtherVersionError,
     SchemaError,
     Seed,
     Share,
@@ -53,10 +54,10 @@ from ai.files.schema import (
 from ai.files.writing import append_line, free_path, take, write_bytes, write_text
 
 __all__ = [
-    "CONFIG", "CONTROLS", "MOST", "NETWORK", "Above", "Count", "Duration", "FolderKind", "OneOf", "SchemaError", "Seed",
-    "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder", "brief", "check_header", "claimed_folder",
-    "count_of", "described", "free_path", "inside", "move_state", "number_of", "parse_json", "problem_in",
-    "read_array", "read_arrays", "read_as", "read_bytes", "read_json", "read_lines", "read_text", "recover_all",
-    "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take", "take_folder", "user_dir",
-    "write_bytes", "write_text",
+    "CONFIG", "CONTROLS", "MOST", "NETWORK", "Above", "Count", "Duration", "FolderKind", "OneOf", "OtherVersionError",
+    "SchemaError", "Seed", "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder", "brief",
+    "check_header", "claimed_folder", "count_of", "described", "free_path", "inside", "move_state", "number_of",
+    "parse_json", "problem_in", "read_array", "read_arrays", "read_as", "read_bytes", "read_json", "read_lines",
+    "read_text", "recover_all", "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take",
+    "take_folder", "user_dir", "write_bytes", "write_text",
 ]  # fmt: skip

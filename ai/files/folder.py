@@ -9,9 +9,9 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Final
@@ -23,43 +23,40 @@ CONFIG = "config.json"  # what every model's folder holds
 _NEW, _OLD = ".new", ".old"  # ends of the names of folders that are not finished, or were moved aside for a new one
 _ASIDE: Final = re.compile(r"\.(.+?)(\.[0-9a-f]{8})?\.(?:new|old)")  # such a name
 _STALE: Final = 3600.0  # seconds after which one that is not finished counts as abandoned
-_DESKTOP: Final = (".DS_Store", "Thumbs.db", "desktop.ini")  # what systems leave wherever a folder was looked at
+_DESKTOP: Final = ("*.DS_Store", "*Thumbs.db", "*desktop.ini")  # what systems leave wherever a folder was looked at
 
 
 @dataclass(frozen=True)
 class FolderKind:
-    """Kind of a model's folder: its format, and what it may hold.
+    """Kind of a model's folder: its format, as its `config.json` says, and the files in it.
 
-    Attributes:
-        format: what its `config.json` says it is.
-        files: names of files besides that, in which * stands for anything.
-        folders: kinds of the folders within, by name.
-
+    `files` are paths relative to the folder, in which * stands for anything.
     """
 
     format: str
-    files: tuple[str, ...] = ()
-    folders: Mapping[str, "FolderKind"] = field(default_factory=dict)
+    files: tuple[str, ...] = (CONFIG,)
+
+    def within(self, name: str) -> tuple[str, ...]:
+        """Return the files of such a folder that lies within another, for the kind of that one."""
+        return tuple(f"{name}/{file}" for file in self.files)
 
     def foreign(self, folder: Path) -> str:
-        """Return a few words on what in a folder does not belong into one of this kind; empty if all of it does."""
+        """Say what in a folder does not belong into one of this kind; empty if all of it does."""
         try:
             said = read_json(folder / CONFIG)
         except (OSError, ValueError):
             return f"no {CONFIG} that can be read"
         if not isinstance(said, dict) or said.get("format") != self.format:
             return f"{CONFIG} of another kind"
-        for path in folder.iterdir():
-            known = path.is_file() and any(fnmatchcase(path.name, name) for name in (CONFIG, *_DESKTOP, *self.files))
-            if path.is_dir() and not path.is_symlink() and path.name in self.folders:
-                if within := self.folders[path.name].foreign(path):
-                    return f"{within} in {path.name}"
-            elif path.is_symlink() or not known:
-                return brief(path.name, 60)
+        for path in folder.rglob("*"):
+            name = path.relative_to(folder).as_posix()
+            known = path.is_dir() or any(fnmatchcase(name, each) for each in (*self.files, *_DESKTOP))
+            if path.is_symlink() or not known:
+                return brief(name, 60)
         return ""
 
 
-NETWORK: Final = FolderKind("tranquility network", ("layer-*-*.npy",))
+NETWORK: Final = FolderKind("tranquility network", (CONFIG, "layer-*-*.npy"))
 
 
 def user_dir() -> Path:

@@ -25,19 +25,25 @@ def knob(
     live: bool = False,
     offers: tuple[Any, ...] = (),
     needs: str = "",
+    compare: bool = True,
 ) -> Any:
     """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
 
     `offers` are a few values for a screen to propose, where the range says too little. `needs` names another field:
-    while that is off or 0, this one has no effect.
+    while that is off or 0, this one has no effect. `compare` is off for what is a name, and makes no difference.
     """
     described = locals().copy()
-    return field(default=described.pop("default"), metadata=described)
+    return field(default=described.pop("default"), compare=described.pop("compare"), metadata=described)
 
 
 @dataclass(frozen=True)
 class Knobs:
-    """Base class of settings whose fields are all `knob`s; values out of range raise ValueError, which names all."""
+    """Base class of settings whose fields are all `knob`s; values out of range raise ValueError, which names all.
+
+    Settings know by name which preset they began as, however they are changed.
+    """
+
+    preset: str = knob("modern", "Preset that these settings began as.", "learning", compare=False)
 
     def __post_init__(self) -> None:
         if problems := self.problems():
@@ -58,8 +64,14 @@ class Knobs:
 
     def differences(self, other: Self) -> dict[str, Any]:
         """Return the values that `other` does not have, by field, as JSON can hold them."""
-        theirs = other.to_json()
-        return {name: value for name, value in self.to_json().items() if value != theirs[name]}
+        mine, theirs = self.to_json(), other.to_json()
+        compared = [item.name for item in fields(self) if item.compare]
+        return {name: mine[name] for name in compared if mine[name] != theirs[name]}
+
+    def described(self, presets: Mapping[str, Self]) -> dict[str, Any]:
+        """Return the name of its preset, or of the first where there is none of that name, and what differs from it."""
+        preset = self.preset if self.preset in presets else next(iter(presets))
+        return {"preset": preset, "changes": self.differences(presets[preset])}
 
     @classmethod
     def problem_of(cls, name: str, value: Any) -> str:
@@ -123,11 +135,5 @@ class Knobs:
     def fixed_differences(self, other: Self) -> list[str]:
         """Return the names of the fields in which `other` differs although a run cannot change them."""
         taken = self.with_live(other)
-        return [item.name for item in fields(self) if getattr(taken, item.name) != getattr(other, item.name)]
-
-
-def nearest_preset(config: Knobs, presets: Mapping[str, Knobs]) -> dict[str, Any]:
-    """Name the preset with the fewest settings different, and those settings."""
-    changes = {name: config.differences(preset) for name, preset in presets.items()}
-    nearest = min(changes, key=lambda name: len(changes[name]))
-    return {"preset": nearest, "changes": changes[nearest]}
+        compared = [item.name for item in fields(self) if item.compare]
+        return [name for name in compared if getattr(taken, name) != getattr(other, name)]

@@ -1,8 +1,8 @@
 """One reader for files that anybody may have made.
 
-It takes regular files alone, inside their folder and within a size; JSON with finite numbers, not nested without end;
-arrays without pickled objects, of a shape that is checked. What the system refuses, and what is no regular file or too
-large, is an OSError; what makes no sense is a ValueError. Messages are short, whatever the file says.
+It takes regular files alone, inside their folder and within a size; JSON with finite numbers; arrays without pickled
+objects, of a shape that is checked. What the system refuses, and what is no regular file or too large, is an OSError;
+what makes no sense is a ValueError. Messages are short, whatever the file says.
 """
 
 import errno
@@ -22,7 +22,6 @@ import numpy.typing as npt
 
 SMALL: Final = 4_000_000  # bytes; what a person may read is smaller
 MOST: Final = 2**53  # of anything that is counted: up to here, floats know every whole number
-_DEPTH: Final = 32  # lists in lists that a JSON file may have: whatever walks through them later has room
 _HEADER: Final = 1 << 20  # bytes of a file of one array besides its numbers
 
 # Characters that end a line, move the cursor or turn the order of writing around, and show nothing themselves.
@@ -41,8 +40,8 @@ def shown(value: object, most: int = 40) -> str:
     """Return a value as a message quotes it: in JSON's words, not Python's, and shortened, whatever a file may hold."""
     try:
         text = repr(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=repr)
-    except ValueError:  # an int of more than some 4,000 digits
-        return "a number of very many digits"
+    except (ValueError, RecursionError):  # an int of more than some 4,000 digits, or lists in lists without end
+        return "something very large"
     return brief(text, most)
 
 
@@ -58,7 +57,7 @@ def problem_in(error: Exception) -> str:
 # Bytes and text
 
 
-def _open(path: str | Path, most: int | None = None) -> BinaryIO:
+def _open(path: str | Path, most: int) -> BinaryIO:
     """Open a regular file of at most so many bytes for reading; raises OSError for anything else."""
     try:
         said = Path(path).stat()  # before it is opened: a pipe would wait for its writer
@@ -66,17 +65,20 @@ def _open(path: str | Path, most: int | None = None) -> BinaryIO:
         raise OSError(errno.EINVAL, "no file can have such a name", str(path)) from error
     if not stat.S_ISREG(said.st_mode):
         raise OSError(errno.EINVAL, "is not an ordinary file", str(path))
-    if most is not None and said.st_size > most:
-        raise _too_large(path, most)
+    _check_size(path, said.st_size, most)
     return Path(path).open("rb")
+
+
+def _check_size(path: str | Path, size: int, most: int) -> None:
+    if size > most:
+        raise OSError(errno.EFBIG, f"is larger than the {most:,} bytes that there can be", str(path))
 
 
 def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
     """Return what a file of at most so many bytes holds; raises OSError."""
     with _open(path, most) as file:
         held = file.read(most + 1)
-    if len(held) > most:  # it has grown, or lies about its size as the system's own files do
-        raise _too_large(path, most)
+    _check_size(path, len(held), most)  # it has grown, or lies about its size as the system's own files do
     return held
 
 
@@ -87,7 +89,7 @@ def read_text(path: str | Path, most: int = SMALL) -> str:
 
 def read_end(path: str | Path, most: int) -> str:
     """Return the text at the end of a file, at most so many bytes of it; raises OSError."""
-    with _open(path) as file:
+    with _open(path, MOST) as file:
         file.seek(max(0, file.seek(0, os.SEEK_END) - most))
         return file.read(most).decode(errors="replace")
 
@@ -100,10 +102,6 @@ def inside(folder: str | Path, name: str) -> Path:
     return path
 
 
-def _too_large(path: str | Path, most: int) -> OSError:
-    return OSError(errno.EFBIG, f"is larger than the {most:,} bytes that there can be", str(path))
-
-
 # JSON
 
 
@@ -113,21 +111,11 @@ def read_json(path: str | Path, most: int = SMALL) -> Any:
 
 
 def parse_json(text: str) -> Any:
-    """Return what a JSON text says; raises ValueError for what is none, nested deeply, or has numbers not finite."""
+    """Return what a JSON text says; raises ValueError for what is none, or has numbers that are not finite."""
     try:
-        value = json.loads(text, parse_float=_finite, parse_constant=_finite)
-        # In most files there are too few brackets for more than that, so nobody has to look how they are nested.
-        deep = text.count("[") + text.count("{") > _DEPTH and _depth(value) > _DEPTH
+        return json.loads(text, parse_float=_finite, parse_constant=_finite)
     except RecursionError:
-        deep = True
-    if deep:
-        raise ValueError("is nested too deeply")
-    return value
-
-
-def _depth(value: Any) -> int:
-    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
-    return 0 if parts is None else 1 + max(map(_depth, parts), default=0)
+        raise ValueError("is nested too deeply") from None
 
 
 def _finite(digits: str) -> float:
@@ -196,8 +184,8 @@ def _load(path: str | Path, most: int) -> npt.NDArray[Any] | dict[str, npt.NDArr
     """
     with _open(path, most) as file:
         try:
-            if zipfile.is_zipfile(file) and sum(each.file_size for each in zipfile.ZipFile(file).infolist()) > most:
-                raise _too_large(path, most)
+            if zipfile.is_zipfile(file):
+                _check_size(path, sum(each.file_size for each in zipfile.ZipFile(file).infolist()), most)
             file.seek(0)
             held = np.load(file, allow_pickle=False)
             return held if isinstance(held, np.ndarray) else dict(held)

@@ -33,6 +33,10 @@ class SchemaError(ValueError):
         super().__init__("; ".join(named))
 
 
+class OtherVersionError(ValueError):
+    """A file is of the right format, in a version that this program does not read."""
+
+
 class Rule:
     """Rule for values of the right type: what has to hold, and the words for one of which it does not."""
 
@@ -111,12 +115,15 @@ def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any],
 
 
 def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
-    """Return the values of a file that says it is of this format and version; raises ValueError."""
+    """Return the values of a file that says it is of this format and version; raises ValueError.
+
+    Of another version, that is an OtherVersionError.
+    """
     if not isinstance(values, dict) or values.get("format") != form:
         raise ValueError(f"does not say that this is a {form!r}")
     held = values.get("version")
     if type(held) is not int or held != version:
-        raise ValueError(f"format version {shown(held)}; this program reads version {version}")
+        raise OtherVersionError(f"format version {shown(held)}; this program reads version {version}")
     return values
 
 

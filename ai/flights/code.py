@@ -1,7 +1,7 @@
-"""Code of a flight, short enough for a message: `tranq3-`, base64, `-over`.
+"""Code of a flight, short enough for a message: `tranq4-`, base64, `-over`.
 
 It stands for deflated bytes and their checksum. The bytes are start and claim as one line of JSON, a byte for each run
-of equal steps, and for a flight by sticks the moves of both. docs/sharing.md describes them.
+of equal steps, and for a flight by sticks the moves of both. docs/codes.md describes them.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from ai.files import OneOf, Sized, Within, parse_json, read_as
 from ai.flights.recording import (
     LONGEST,
     Claim,
+    ClaimedFlight,
     LegAsList,
     Recording,
-    SharedFlight,
     Start,
     StickHolder,
 )
@@ -31,7 +31,7 @@ from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome
 from ai.lander.push import KEYS, STEPS, Push
 
-VERSION: Final = 3
+VERSION: Final = 4
 BEGIN, END = f"tranq{VERSION}-", "-over"
 _LONGEST_TEXT: Final = 1_000_000  # characters of a text in which codes are looked for
 _LARGEST: Final = 4 * LONGEST  # bytes that a code may unfold to: several for each step
@@ -48,7 +48,7 @@ _MOVES: Final = b"\xff"  # comes before the moves of the sticks
 _USUAL: Final = (
     b'"daily","wind","rung_"pads":3,"wider_pads":true,"untimed":true},"leg":[2,12.5,false]'
     b'"outcome":"CRASHED","points":0,"end":[-{"seed":1,"spawn":"random","pads":1,"mission":"",'
-    b'"easing":{"wider_pads":false,"untimed":false},"area":1,"leg":null,"course":"","barred":"","outcome":"LANDED",'
+    b'"easing":{"wider_pads":false,"untimed":false},"leg":null,"course":"","barred":"","outcome":"LANDED",'
     b'"points":9'
 )
 
@@ -75,7 +75,7 @@ class _Content(Start):
     barred: Annotated[str, Sized(_LONGEST_NAME)]
 
 
-def code_of(flight: SharedFlight) -> str:
+def code_of(flight: ClaimedFlight) -> str:
     """Return the code of a flight."""
     recording, claim = flight.recording, flight.claim
     end = [round(_GRID * min(max(number, -_FAR), _FAR)) for number in claim.end]
@@ -105,7 +105,7 @@ def _packed(recording: Recording) -> bytes:
     return bytes(each + _HELD * (min(_RUN, left) - 1) for each, steps in runs for left in steps) + moves
 
 
-def flight_of(code: str) -> SharedFlight:
+def flight_of(code: str) -> ClaimedFlight:
     """Return the flight of a code, in time and memory that its length bounds; raises CodeError for any other text.
 
     Whatever a messenger has put into it is passed over: line breaks, blanks, quotation marks.
@@ -135,7 +135,7 @@ def codes_in(text: str) -> Iterator[str]:
     return (match[0] for match in _CODE.finditer(_ALIEN.sub("", text[:_LONGEST_TEXT])))
 
 
-def _read(data: bytes) -> SharedFlight:
+def _read(data: bytes) -> ClaimedFlight:
     """Return the flight of a code's bytes; raises ValueError or zlib.error for what is none."""
     unpacker = zlib.decompressobj(-zlib.MAX_WBITS, zdict=_USUAL)
     line, _, inputs = unpacker.decompress(data, _LARGEST).partition(b"\n")
@@ -146,7 +146,7 @@ def _read(data: bytes) -> SharedFlight:
         raise ValueError("a leg of a descent has a start and rules of its own")
     x, y, angle = (number / _GRID for number in content.end)
     claim = Claim(Outcome[content.outcome], content.points, (x, y, angle))
-    return SharedFlight(
+    return ClaimedFlight(
         Recording.begun(content, content.leg, *_unpacked(inputs)), claim, content.course, content.barred
     )
 

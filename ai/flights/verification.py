@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.flights.recording import AS_IT_IS, End, Recording, SharedFlight
+from ai.flights.recording import AS_IT_IS, ClaimedFlight, End, Recording
 from ai.lander.descent import can_begin, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import PADS, Ground, Pad, hilly
@@ -49,9 +49,9 @@ def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
         return leg_of(seeds[0], start.leg).begin(start.leg.tank)
     if start.mission:
         env = easing.mission(start.mission).begin(len(seeds))
-        env.limits = env.limits.in_area(start.area)
+        env.limits = env.limits.roomy()
         return env
-    limits = easing.limits(LIMITS).in_area(start.area)
+    limits = easing.limits(LIMITS).roomy()
     ground = ground_of(seeds[0], start.pads, easing.pads)
     env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=limits)
     for slot, seed in enumerate(seeds):  # as each would draw alone
@@ -65,7 +65,7 @@ def day_of(seed: int) -> date | None:
     return date.fromordinal(seed) if 1 <= seed <= date.max.toordinal() else None
 
 
-def in_its_place(flight: SharedFlight) -> bool:
+def in_its_place(flight: ClaimedFlight) -> bool:
     """Whether a flight began where its course begins, with the fuel of that place."""
     recording, course = flight.recording, flight.course
     start = recording.spawn, recording.pads, recording.mission, recording.leg
@@ -118,7 +118,7 @@ def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:
     return Earned(outcome, landing_score(env, slot), medal, int(env.steps[slot]), fuel, (x, y, angle))
 
 
-def is_true(flight: SharedFlight, real: Earned) -> bool:
+def is_true(flight: ClaimedFlight, real: Earned) -> bool:
     """Whether a flight was flown where it says, and really earned what it claims."""
     claim, steps = flight.claim, len(flight.recording.pushes)
     away = max(abs(claimed - flown) for claimed, flown in zip(claim.end, real.end, strict=True))
@@ -126,7 +126,7 @@ def is_true(flight: SharedFlight, real: Earned) -> bool:
     return in_its_place(flight) and alike and away <= TOLERANCE and claim.medal <= real.medal
 
 
-def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
+def verified(flights: Sequence[ClaimedFlight]) -> Iterator[tuple[int, Earned]]:
     """Yield the index of every flight, and what it earned: those of one ground are flown together, in any order."""
     groups = defaultdict[object, list[int]](list)
     for index, flight in enumerate(flights):
@@ -143,7 +143,7 @@ def _together(recording: Recording) -> object:
     if recording.leg:
         return object()  # a leg of a descent has an environment of its own
     seed = recording.seed if recording.pads > 1 else 0
-    return recording.mission, recording.spawn, recording.pads, seed, recording.easing, recording.area
+    return recording.mission, recording.spawn, recording.pads, seed, recording.easing
 
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:

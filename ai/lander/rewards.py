@@ -48,7 +48,7 @@ class Situation:
     """All that rewards compare, before or after a decision; each (n,)."""
 
     distance: Doubles  # metres from standing on the middle of the pad
-    offset: Doubles  # metres sideways from it
+    across: Doubles  # metres from that to the right
     speed: Doubles  # m/s relative to the pad
     tilt: Doubles  # radians from upright, 0 to pi
     outcome: Ints
@@ -64,7 +64,7 @@ class Situation:
         above = above - env.params.stand
         return cls(
             distance=np.sqrt(across * across + above * above),
-            offset=np.abs(across),
+            across=across,
             speed=np.sqrt(vx * vx + vy * vy),
             tilt=env.tilt,
             outcome=env.outcome.copy(),
@@ -77,7 +77,7 @@ class Situation:
     @property
     def aligned(self) -> Doubles:
         """How upright above the middle of the pad, 0 to 1, (n,)."""
-        aligned: Doubles = np.maximum(0.0, 1.0 - self.offset / 3.0) * np.maximum(0.0, 1.0 - self.tilt / 0.5)
+        aligned: Doubles = np.maximum(0.0, 1.0 - np.abs(self.across) / 3.0) * np.maximum(0.0, 1.0 - self.tilt / 0.5)
         return aligned
 
 

@@ -19,7 +19,7 @@ from optuna.trial import TrialState, create_trial
 from ray.exceptions import RayError, RayTaskError
 
 from ai.files import brief
-from ai.sweep.plan import RANDOM, Dimension
+from ai.sweep.design import RANDOM, Dimension
 from ai.sweep.study import Study
 from ai.sweep.trial import trained
 
@@ -33,16 +33,16 @@ class Proposals:
 
     def __init__(self, study: Study) -> None:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
-        plan = study.plan
-        self._space = plan.space
-        self._distributions = {name: _distribution(dimension) for name, dimension in plan.space.items()}
+        design = study.design
+        self._space = design.space
+        self._distributions = {name: _distribution(dimension) for name, dimension in design.space.items()}
         # Another seed each time, or a study that goes on would propose once more what it began with.
-        seed = plan.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
+        seed = design.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
         samplers = optuna.samplers
         self._optuna = optuna.create_study(
             direction="minimize" if study.metric.sign == 1 else "maximize",
             sampler=samplers.RandomSampler(seed)
-            if plan.search == RANDOM
+            if design.search == RANDOM
             else samplers.TPESampler(seed=seed, constant_liar=True),  # so that many at once are not the same
         )
         for trial in study.ranked():
@@ -92,10 +92,10 @@ def run(study: Study, workers: int, stop: Sequence[int], report: Callable[[int],
     jobs: dict[Any, _Job] = {}
     lost: dict[int, str] = {}
     while not stop:
-        left = study.plan.trials - len(study.trials) - len(lost)
+        left = study.design.trials - len(study.trials) - len(lost)
         while len(jobs) < min(workers, left) and len(lost) < MOST_LOST:
             job = _Job(next(numbers), *proposals.ask())
-            jobs[train.remote(study.plan, job.number, job.params)] = job
+            jobs[train.remote(study.design, job.number, job.params)] = job
         if not jobs:
             break
         for task in ray.wait(list(jobs), timeout=_TURN)[0]:
@@ -105,7 +105,7 @@ def run(study: Study, workers: int, stop: Sequence[int], report: Callable[[int],
             except RayError as error:
                 if job.tries < TRIES and not isinstance(error, RayTaskError):
                     job.tries += 1
-                    jobs[train.remote(study.plan, job.number, job.params)] = job
+                    jobs[train.remote(study.design, job.number, job.params)] = job
                 else:
                     cause = str(error.cause) if isinstance(error, RayTaskError) else str(error)
                     lost[job.number] = brief(cause.strip().rpartition("\n")[2])

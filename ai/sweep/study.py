@@ -1,6 +1,6 @@
-"""Study on disk: its plan, and the finished trials, each whole or not there.
+"""Study on disk: its design, and the finished trials, each whole or not there.
 
-    study.json            the plan
+    study.json            the design
     trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
 Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk. A study may
@@ -33,12 +33,12 @@ from ai.files import (
     write_bytes,
     write_text,
 )
-from ai.sweep.plan import Metric, Plan, Point
+from ai.sweep.design import Design, Measurement, Metric
 
 STUDIES: Final = "studies"  # folder of all studies, in the user's
 STUDY_FILE: Final = "study.json"
 TRIAL_FILE: Final = "trial.json"
-FORMAT, VERSION = "tranquility study", 3
+FORMAT, VERSION = "tranquility study", 4
 _MOST: Final = 64_000_000  # bytes of a trial's file
 _UNREADABLE: Final = (OSError, ValueError, TypeError, ArithmeticError, RecursionError)
 _BEST: Final = 10  # rows of the table
@@ -56,7 +56,7 @@ class SeedResult:
     """Result of one seed of a trial."""
 
     seed: Seed
-    curve: Annotated[tuple[Point, ...], Sized(100_000)]  # what was measured on the way
+    curve: Annotated[tuple[Measurement, ...], Sized(100_000)]  # what was measured on the way
     value: float | None  # of the metric; None if there is none
     problem: _Words = ""  # why the run ended before its time; empty if it did not
 
@@ -87,18 +87,18 @@ class Study:
 
     """
 
-    def __init__(self, folder: Path, plan: Plan) -> None:
-        self.folder, self.plan, self.metric = folder, plan, Metric.named(plan.metric)
+    def __init__(self, folder: Path, design: Design) -> None:
+        self.folder, self.design, self.metric = folder, design, Metric.named(design.metric)
         self.trials: dict[int, Trial] = {}
         self.damaged: list[int] = []
 
     @classmethod
-    def create(cls, folder: Path, plan: Plan) -> Self:
+    def create(cls, folder: Path, design: Design) -> Self:
         """Make a new study; raises StudyError if the folder holds anything, OSError if it cannot be written."""
-        plan.check()
+        design.check()
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise StudyError(f"{folder} exists already: --resume goes on with it, or choose another name")
-        study = cls(folder, plan)
+        study = cls(folder, design)
         study._write()
         return study
 
@@ -106,13 +106,13 @@ class Study:
     def load(cls, folder: Path) -> Self:
         """Read a study; raises StudyError for a folder that is none."""
         try:
-            plan = read_as(Plan, check_header(read_json(folder / STUDY_FILE), FORMAT, VERSION).get("plan"))
-            plan.check()
+            design = read_as(Design, check_header(read_json(folder / STUDY_FILE), FORMAT, VERSION).get("design"))
+            design.check()
         except OSError as error:
             raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
         except (ValueError, TypeError, RecursionError) as error:
             raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
-        study = cls(folder, plan)
+        study = cls(folder, design)
         with suppress(OSError):
             names = [path.name for path in (folder / "trials").iterdir() if re.fullmatch(r"[0-9]{4,6}", path.name)]
             for number in sorted(map(int, names)):
@@ -125,9 +125,9 @@ class Study:
     def _read(self, number: int) -> Trial:
         """Read a finished trial; raises one of `_UNREADABLE` for a file that cannot be one of this study."""
         trial = read_as(Trial, read_json(self.trial_folder(number) / TRIAL_FILE, _MOST))
-        self.plan.check_params(trial.params)
+        self.design.check_params(trial.params)
         senseless = not trial.seeds and trial.value is None
-        if trial.number != number or not (senseless or tuple(seed.seed for seed in trial.seeds) == self.plan.seeds):
+        if trial.number != number or not (senseless or tuple(seed.seed for seed in trial.seeds) == self.design.seeds):
             raise ValueError("of another trial, or of other seeds")
         if trial.value is not None and len(trial.values) < len(trial.seeds):
             raise ValueError("a value without that of a seed")
@@ -143,11 +143,11 @@ class Study:
 
     def extend(self, trials: int) -> None:
         """Ask for so many trials in all; raises OSError."""
-        self.plan = replace(self.plan, trials=trials)
+        self.design = replace(self.design, trials=trials)
         self._write()
 
     def _write(self) -> None:
-        saved = {"format": FORMAT, "version": VERSION, "plan": asdict(self.plan)}
+        saved = {"format": FORMAT, "version": VERSION, "design": asdict(self.design)}
         write_text(self.folder / STUDY_FILE, json.dumps(saved, indent=2, allow_nan=False) + "\n")
 
     def record(self, trial: Trial, runs: Files) -> None:
@@ -178,18 +178,18 @@ class Study:
     @property
     def complete(self) -> bool:
         """Whether all trials are finished."""
-        return len(self.trials) >= self.plan.trials
+        return len(self.trials) >= self.design.trials
 
     def shown(self, value: float | None) -> str:
         """Return a value of the metric as the table shows it."""
-        return self.metric.shown(value, self.plan.budget)
+        return self.metric.shown(value, self.design.budget)
 
     def table(self) -> str:
         """Return what the study found, the best trials first."""
-        plan, ranked = self.plan, self.ranked()
-        trials = f"{self.folder.name}: {len(self.trials)} of {plan.trials} trials, {len(plan.seeds)} seeds each"
+        design, ranked = self.design, self.ranked()
+        trials = f"{self.folder.name}: {len(self.trials)} of {design.trials} trials, {len(design.seeds)} seeds each"
         better = f"({'less' if self.metric.sign == 1 else 'more'} is better)"
-        lines = [f"{trials}, compared by {plan.metric}, median of the seeds {better}"]
+        lines = [f"{trials}, compared by {design.metric}, median of the seeds {better}"]
         if self.damaged:
             lines.append(f"of {len(self.damaged)} more, the files cannot be read: {_listed(self.damaged)}")
         if senseless := [trial for trial in self.trials.values() if trial.problem]:
@@ -197,7 +197,7 @@ class Study:
             lines.append(f"of {len(senseless)}, the settings make no sense: {numbers}: {brief(senseless[0].problem)}")
         if not ranked:
             return "\n".join([*lines, "no trial has a result yet"])
-        lines.append(f"\n{'trial':>5} {plan.metric:>12} {'of the seeds':>24}  settings")
+        lines.append(f"\n{'trial':>5} {design.metric:>12} {'of the seeds':>24}  settings")
         for trial in ranked[:_BEST]:
             spread = f"{self.shown(min(trial.values))} to {self.shown(max(trial.values))}"
             lines.append(f"{trial.number:>5} {self.shown(trial.value):>12} {spread:>24}  {settings(trial.params)}")

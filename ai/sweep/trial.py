@@ -16,7 +16,7 @@ from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.files import brief
 from ai.files.knobs import Knobs
-from ai.sweep.plan import DIGITS, Metric, Plan, Point
+from ai.sweep.design import DIGITS, Design, Measurement, Metric
 from ai.sweep.study import Files, SeedResult, Trial, median, seed_folder
 from ai.training.config import Config
 from ai.training.loop import Training, task_of
@@ -24,24 +24,24 @@ from ai.training.run import Limit, save
 from ai.training.tasks import VALIDATION_SEED
 
 
-def trained(plan: Plan, number: int, params: dict[str, Any]) -> tuple[Trial, Files]:
+def trained(design: Design, number: int, params: dict[str, Any]) -> tuple[Trial, Files]:
     """Train a trial; return its result, and the files of the runs that came to their end.
 
     Raises ValueError or ImportError where no run of this study can begin: images or environment are missing.
     """
-    check_ready(plan.config)
+    check_ready(design.config)
     began, results = time.monotonic(), []
     try:
-        runs = [seed_run(plan, params, seed) for seed in plan.seeds]
+        runs = [seed_run(design, params, seed) for seed in design.seeds]
     except ValueError as error:
         return Trial(number, params, None, 0.0, (), brief(error)), {}
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        for seed, run in zip(plan.seeds, runs, strict=True):
-            curve, problem = _curve(run, plan)
+        for seed, run in zip(design.seeds, runs, strict=True):
+            curve, problem = _curve(run, design)
             if not problem:
                 save(run, folder / seed_folder(seed), final=True, state=False)
-            value = Metric.named(plan.metric).of(curve, plan.budget, bool(problem))
+            value = Metric.named(design.metric).of(curve, design.budget, bool(problem))
             results.append(SeedResult(seed, tuple(curve), value, brief(problem)))
         files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     value, seconds = median([seed.value for seed in results]), round(time.monotonic() - began, 3)
@@ -57,33 +57,34 @@ def check_ready(config: Knobs) -> None:
         task_of(config)
 
 
-def seed_run(plan: Plan, params: dict[str, Any], seed: int) -> Any:
+def seed_run(design: Design, params: dict[str, Any], seed: int) -> Any:
     """Return the run of one seed; raises ValueError for settings that make no sense."""
-    config: Any = type(plan.config).from_json(plan.settings | params)
-    if plan.kind == DIGITS:
+    config: Any = type(design.config).from_json(design.settings | params)
+    if design.kind == DIGITS:
         if not config.held_out:
             raise ValueError("a study of digits needs images held out: held_out was 0")
         return DigitTraining(config, seed)
     run = Training(config, seed)
-    run.validation_episodes = plan.validation or run.validation_episodes
+    run.validation_episodes = design.validation or run.validation_episodes
     return run
 
 
-def _curve(run: Any, plan: Plan) -> tuple[list[Point], str]:
+def _curve(run: Any, design: Design) -> tuple[list[Measurement], str]:
     """Train a run to its end, measured at every mark; return the curve, and why it ended if it diverged."""
-    curve: list[Point] = []
+    curve: list[Measurement] = []
+    marks = *range(design.every, design.budget, design.every), design.budget
     try:
-        curve.extend(_trained_to(run, mark) for mark in (*range(plan.every, plan.budget, plan.every), plan.budget))
+        curve.extend(_trained_to(run, mark) for mark in marks)
     except FloatingPointError as error:
         return curve, str(error)
     return curve, ""
 
 
-def _trained_to(run: Any, mark: int) -> Point:
+def _trained_to(run: Any, mark: int) -> Measurement:
     """Train a run up to so many decisions or epochs, and measure it; raises FloatingPointError if it diverges."""
     for _ in Limit(moment=mark * getattr(run, "steps_per_epoch", 1)).run(run):
         pass
     if isinstance(run, DigitTraining):
-        return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
+        return Measurement(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
     score = run.evaluation or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
-    return Point(run.moment, score.success, score.mean_return)
+    return Measurement(run.moment, score.success, score.mean_return)

@@ -13,6 +13,7 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
+from ai.files.knobs import Knobs
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config
 from ai.training.curves import RecentCurves, loss_explodes, values_run_away
@@ -29,6 +30,7 @@ _WORSE: Final = 0.15  # of a share that is worse than the twin's by more than ch
 MEASURED: Final = "modern"  # the preset
 _TERMINAL_ALONE: Final = {name: 0.0 for name in vars(RewardWeights()) if name != "terminal"}
 _SMALLEST_MEMORY: Final = 100
+_WITHOUT: Final = " without "  # in the name of a preset, before that of what is taken away
 
 # Settings that each changes, given the base configuration.
 SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
@@ -45,13 +47,19 @@ SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
 
 def sabotaged(config: Config, name: str) -> Config:
     """Return the configuration without the part that `name` takes away; raises KeyError for an unknown name."""
-    return config.changed(**SABOTAGES[name](config))
+    return config.changed(**SABOTAGES[name](config), preset=f"{named(config)[0]}{_WITHOUT}{name}")
+
+
+def named(config: Knobs) -> tuple[str, str]:
+    """Return the name of a configuration's preset, and of the part that was taken away from it, or ""."""
+    preset, _, sabotage = config.preset.partition(_WITHOUT)
+    return preset, sabotage
 
 
 def differences(before: Config, after: Config) -> dict[str, tuple[Any, Any]]:
     """Return both values of every setting that differs; a part of the reward by the name "reward_weights.part"."""
     found: dict[str, tuple[Any, Any]] = {}
-    for item in fields(before):
+    for item in (each for each in fields(before) if each.compare):
         old, new = getattr(before, item.name), getattr(after, item.name)
         if is_dataclass(old) and not isinstance(old, type):
             parts = zip(asdict(old).items(), asdict(new).values(), strict=True)

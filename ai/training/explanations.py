@@ -17,6 +17,7 @@ from ai.environment import Floats, Ints, StepResult
 from ai.explain.agent_lesson import Before, Flown, Lesson, explain
 from ai.explain.learning_step import shown_lines
 from ai.explain.recorder import Recorder
+from ai.lander.environment import Outcome
 from ai.training.loop import Training
 
 _MOST_KEPT: Final = 40  # moments of a run; with twice as many, every second one is dropped
@@ -47,13 +48,22 @@ class Explanations:
         self._training = training
         self._decided: deque[_Decided] = deque(maxlen=training.config.n_step)
         self._moments: list[_Moment] = []
+        self._first: _Moment | None = None  # in which a lander landed, and the network could learn of it
         self._every = _FIRST_EVERY * training.env.num_envs
         self._keep_at = training.agent.decisions
 
-    def follow(self, actions: Ints, result: StepResult) -> None:
-        """Keep one decision of all landers: what comes of it, before those that have ended begin anew."""
-        before = self._training.agent.decisions - len(actions)
-        self._decided.append(_Decided(before, self._training.observation, actions, result))
+    def follow(self, actions: Ints, result: StepResult) -> int | None:
+        """Keep one decision of all landers: what comes of it, before those that have ended begin anew.
+
+        Return the lander that has landed, if it is the first from which there is anything to learn: its moment is kept.
+        """
+        agent = self._training.agent
+        self._decided.append(_Decided(agent.decisions - len(actions), self._training.observation, actions, result))
+        landed = np.flatnonzero(result.outcome == Outcome.LANDED)
+        if self._first is not None or not len(landed) or not agent.ready:
+            return None
+        self._first = self._now()
+        return int(landed[0])
 
     def keep(self) -> None:
         """Keep the present moment, if one is due."""
@@ -77,7 +87,7 @@ class Explanations:
             raise ValueError(f"there is no lander {slot}: {self._training.env.num_envs} fly")
         if not self._training.agent.ready or not self._decided:
             raise ValueError("the network has not begun to learn: its replay buffer holds too few transitions")
-        kept = self._moments if decisions is not None else []
+        kept = [*self._moments, *([self._first] if self._first else [])] if decisions is not None else []
         moment = min(kept, key=lambda each: abs(each.before.agent.decisions - (decisions or 0)), default=None)
         moment = moment or self._now()
         cell, flown = _memory(moment, slot)

@@ -1,4 +1,7 @@
-"""History of a training run: points of its curves, checkpoints, turned knobs and validations."""
+"""History of a training run: points of its curves, checkpoints, turned knobs and validations.
+
+On disk, curves are a table that any program opens, `curves.csv`.
+"""
 
 from __future__ import annotations
 
@@ -15,19 +18,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.digits.training import DigitProgress
 from ai.environment import Doubles, Floats
-from ai.files import (
-    MOST,
-    Above,
-    Count,
-    OneOf,
-    Sized,
-    Within,
-    inside,
-    parse_json,
-    problem_in,
-    read_arrays,
-    read_as,
-)
+from ai.files import MOST, Above, Count, Sized, Within, inside, problem_in, read_arrays, read_as, read_json, read_text
 from ai.files import described as array_said
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
@@ -36,15 +27,15 @@ from ai.training.config import Config
 from ai.training.loop import PARTS, Progress
 
 REVERTED: Final = "checkpoint"  # the name of the change that goes back to one
-HISTORY_FILE: Final = "history.npz"
+HISTORY_FILE: Final = "history.json"
+CURVES_FILE: Final = "curves.csv"
+CHECKPOINTS_FILE: Final = "checkpoints.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
-_VERSION: Final = 1
-_MOST_TEXT: Final = 1 << 22  # letters of what is said of the arrays
+_FORMERLY: Final = "history.npz"
+_VERSION: Final = 2
 _MOST_VALUES: Final = 1 << 26  # numbers in all checkpoints together: 256 MB
-_MOST_COLUMNS: Final = 1000
-
-
+_SLACK: Final = 1 << 20  # bytes of an archive beside its numbers
 # What a run measures at each of its points, by name.
 COLUMNS: Final = (*(item.name for item in fields(Progress)[:-1]), *PARTS)
 DIGIT_COLUMNS: Final = tuple(item.name for item in fields(DigitProgress))
@@ -121,19 +112,18 @@ class _CheckpointFile:
     seconds: float
     decisions: Count
     success: float
-    scale: dict[str, Any] | None
+    normalizer: dict[str, Any] | None
 
 
 @dataclass(frozen=True)
 class _HistoryFile:
-    version: Annotated[int, OneOf((_VERSION,))]
-    columns: Annotated[tuple[str, ...], Sized(_MOST_COLUMNS)]
+    version: int
     stride: Annotated[int, Within(1, MOST)]
-    told: Count
-    checkpoints: Annotated[tuple[_CheckpointFile, ...], Sized(MOST_CHECKPOINTS)]
-    alterations: tuple[SettingChange, ...]
-    validations: tuple[Validation, ...]
+    appended: Count
     reward_scale: Annotated[float, Above(0)]
+    checkpoints: Annotated[tuple[_CheckpointFile, ...], Sized(MOST_CHECKPOINTS)]
+    changes: tuple[SettingChange, ...]
+    validations: tuple[Validation, ...]
 
 
 class History:
@@ -235,62 +225,78 @@ class History:
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if it cannot be written."""
         checkpoints = [
-            {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.normalizer}
-            for each in self.checkpoints
+            {name: part for name, part in vars(checkpoint).items() if name != "values"}
+            for checkpoint in self.checkpoints
         ]
         described = {
-            "version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale, "checkpoints": checkpoints,
-            "stride": self._stride, "told": self._appended,
-            "alterations": [asdict(change) for change in self.setting_changes],
+            "version": _VERSION, "stride": self._stride, "appended": self._appended, "reward_scale": self.reward_scale,
+            "checkpoints": checkpoints, "changes": [asdict(change) for change in self.setting_changes],
             "validations": [asdict(validation) for validation in self.validations],
         }  # fmt: skip
+        (folder / HISTORY_FILE).write_text(json.dumps(described, allow_nan=False) + "\n", encoding="utf-8")
+        rows = (",".join(map(repr, row)) for row in self.points.tolist())
+        (folder / CURVES_FILE).write_text("\n".join([",".join(self.columns), *rows]) + "\n", encoding="utf-8")
         values = np.array([each.values for each in self.checkpoints] or np.empty((0, 0)), dtype=np.float32)
-        text = np.array(json.dumps(described, allow_nan=False))
-        np.savez(folder / HISTORY_FILE, allow_pickle=False, described=text, points=self.points, values=values)
+        np.savez(folder / CHECKPOINTS_FILE, allow_pickle=False, values=values)
 
     @classmethod
     def read(cls, folder: str | Path, columns: Sequence[str] = COLUMNS) -> History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
-        history = cls(columns)
+        history, file = cls(columns), HISTORY_FILE
+        if (Path(folder) / _FORMERLY).exists():
+            raise ModelFormatError(folder, [f"{_FORMERLY} was saved by another version, and is left as it is"])
         try:
-            arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
-            described = read_as(_HistoryFile, parse_json(str(arrays["described"])))
-            history._restore(described, arrays["points"], arrays["values"])
-            history.reward_scale = described.reward_scale
-        except FileNotFoundError:
-            return cls(columns)
+            described = read_json(inside(folder, file))
+            if not isinstance(described, dict) or described.get("version") != _VERSION:
+                raise ValueError("was saved by another version, and is left as it is")
+            history._restore(read_as(_HistoryFile, described))
+            file = CURVES_FILE
+            history._restore_points(read_text(inside(folder, file)).splitlines())
+            file = CHECKPOINTS_FILE
+            history._restore_networks(read_arrays(inside(folder, file), 4 * _MOST_VALUES + _SLACK, _expect)["values"])
+        except FileNotFoundError as error:
+            if file == HISTORY_FILE:
+                return cls(columns)
+            raise ModelFormatError(folder, [f"{file} is missing"]) from error
         except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as error:
-            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {problem_in(error)}"]) from error
+            raise ModelFormatError(folder, [f"{file}: {problem_in(error)}"]) from error
         return history
 
-    def _restore(self, described: _HistoryFile, points: Doubles, values: Floats) -> None:
-        """Take over what was read; raises KeyError, TypeError or ValueError where it makes no sense."""
-        if described.columns != self.columns:
+    def _restore(self, described: _HistoryFile) -> None:
+        self._stride, self._appended, self.reward_scale = described.stride, described.appended, described.reward_scale
+        self.setting_changes, self.validations = list(described.changes), list(described.validations)
+        for saved in described.checkpoints:
+            if saved.normalizer is not None:
+                Normalizer(len(saved.normalizer["mean"])).load(saved.normalizer)  # raises for one that makes no sense
+            nothing = np.empty(0, np.float32)
+            self.checkpoints.append(
+                Checkpoint(saved.seconds, saved.decisions, saved.success, nothing, saved.normalizer)
+            )
+
+    def _restore_points(self, lines: list[str]) -> None:
+        """Take over the lines of a table; raises ValueError where it makes no sense."""
+        if not lines or tuple(lines[0].split(",")) != self.columns:
             raise ValueError("its curves are of another kind of run, or of another version")
-        if points.ndim != 2 or points.shape[1] != len(self.columns) or len(points) > CAPACITY:
-            raise ValueError(f"points of shape {points.shape}")
-        self._length, self._stride, self._appended = len(points), described.stride, described.told
-        if self._appended < self._length:
+        self._length = len(lines) - 1
+        if not self._length <= min(self._appended, CAPACITY):
             raise ValueError(f"{self._length} points of {self._appended}, at a stride of {self._stride}")
-        self.points[...] = points
+        for row, line in enumerate(lines[1:]):
+            numbers = line.split(",")
+            if len(numbers) != len(self.columns):
+                raise ValueError(f"{len(numbers)} numbers in line {row + 2}, of {len(self.columns)} columns")
+            self.points[row] = numbers
+
+    def _restore_networks(self, values: Floats) -> None:
+        """Give the checkpoints their networks; raises ValueError where they do not fit."""
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
-        for saved, row in zip(described.checkpoints, values, strict=True):
-            if saved.scale is not None:
-                Normalizer(len(saved.scale["mean"])).load(saved.scale)  # raises for one that makes no sense
-            self.checkpoints.append(Checkpoint(saved.seconds, saved.decisions, saved.success, row, saved.scale))
-        self.setting_changes = list(described.alterations)
-        self.validations = list(described.validations)
+        pairs = zip(self.checkpoints, values, strict=True)
+        self.checkpoints = [replace(checkpoint, values=row) for checkpoint, row in pairs]
 
 
 def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     """Raise ValueError for an array that no history has."""
     rows, columns = shape if len(shape) == 2 else (-1, -1)
     few = 0 <= rows <= MOST_CHECKPOINTS and columns >= 0 and rows * columns <= _MOST_VALUES
-    fits = {
-        "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
-        "points": 0 <= rows <= CAPACITY and 0 <= columns <= _MOST_COLUMNS and dtype == np.float64,
-        "values": few and dtype == np.float32,
-    }
-    if not fits.get(name):
+    if name != "values" or not few or dtype != np.float32:
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")

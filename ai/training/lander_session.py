@@ -13,7 +13,7 @@ from ai.training.config import in_force
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, REVERTED, Checkpoint, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import DIVERGED, NetworkState, SwarmState
+from ai.training.messages import DIVERGED, FirstLanding, NetworkState, SwarmState
 from ai.training.session import Session
 from ai.training.tasks import Score
 
@@ -40,6 +40,7 @@ class LanderSession(Session[Training]):
         self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
+        self._new = not training.agent.decisions
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
 
@@ -85,7 +86,9 @@ class LanderSession(Session[Training]):
 
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = self._swarm_state_now()
-        self._explanations.follow(self.env.actions, result)
+        slot = self._explanations.follow(self.env.actions, result)
+        if slot is not None and self._new:
+            self.messages.append(FirstLanding(slot, self.training.agent.decisions))
 
     def _swarm_state_now(self) -> SwarmState:
         env, training = self.env, self.training

@@ -24,13 +24,10 @@ class Scene:
         takes_files: whether files can be dropped here that are no flights.
         typing: whether a text is being typed, which then takes what is pasted.
         takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
-        notes_low: whether notes stand near its lower edge now, for words at its head are needed.
-        flows: whether it is laid out anew for each window and size of text, on `Canvas.reading`; otherwise for a page
-            of 1280 × 720 points, and what the window shows beside it.
 
     """
 
-    takes_files = typing = takes_switch = notes_low = flows = False
+    takes_files = typing = takes_switch = False
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -66,13 +63,9 @@ class Scene:
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""
 
-    def laid_on(self, canvas: Canvas) -> Canvas:
-        """Return the canvas in whose points this scene is laid out, and is given the mouse."""
-        return canvas.whole.reading if self.flows else canvas.whole
-
     def draw_on(self, canvas: Canvas, alpha: float) -> None:
         """Draw into the whole window."""
-        self.draw(self.laid_on(canvas), alpha)
+        self.draw(canvas.reading, alpha)
 
 
 @dataclass(frozen=True)

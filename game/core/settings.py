@@ -56,7 +56,8 @@ class Settings:
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
     rung: Annotated[int, Within(-1, TOP_RUNG)] = -1  # place on the ladder of starts, from 0; -1 before it is known
     learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.scenes.learn.path writes it
-    chapter: str = ""  # key of the chapter last opened
+    lesson_offered: bool = False  # whether a first landing in Train has been stopped at, or could have been
+    slow_runs: bool = True  # whether landers in Train learn slowly enough to be watched
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
     unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved
 
@@ -64,7 +65,7 @@ class Settings:
         """Whether a part of a screen stays open."""
         return part in self.opened.split()
 
-    def open(self, part: str) -> None:
+    def unfold(self, part: str) -> None:
         """Open a part of a screen from now on, or close it."""
         self.opened = " ".join(sorted({part}.symmetric_difference(self.opened.split())))
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from game.core.kept import Kept
-from game.training.digit_models import NAMES
+from game.core.shelf import Kept
+from game.training.library import NAMES
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier

@@ -22,7 +22,8 @@ _MOST_EXPLAINED: Final = 256  # areas of a frame, at most
 
 Align = Literal["left", "centre", "right"]
 SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
-PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # in points
+PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # of the world, in points
+GROUND: Final = 80.0  # points at the foot of that page that are ground, and free for words
 
 Point = tuple[float, float]
 Stamp = tuple[pygame.Surface, tuple[int, int]]  # a picture, and the corner where it is drawn, in pixels
@@ -30,7 +31,7 @@ Now = Callable[[], str]
 
 
 class Explanation(NamedTuple):
-    """Area of the screen, in points, with what stands there, and what that means now."""
+    """Area of the window, in points of what is read, with what stands there, and what that means now."""
 
     box: pygame.FRect
     what: str
@@ -38,23 +39,25 @@ class Explanation(NamedTuple):
 
 
 class Canvas:
-    """Drawing surface of a window, with a page of 1280 × 720 points, as large as fits, in its middle.
+    """Drawing surface of a window, for words, or for the world behind them.
 
-    Positions and lengths are points unless a name says pixels. The page's top left corner is (0, 0); a window of
-    another shape than the page's shows more on two sides, as far as `view` reaches: points there are negative, or
-    beyond 1280 × 720. Nothing is scaled after drawing: another window size is drawn anew, and shapes and strings are
+    Positions and lengths are points unless a name says pixels. What is read flows: its corner (0, 0) is the window's,
+    a point is never less than a pixel, and larger text is a larger point, so that in a small window, or for large text,
+    there are fewer points, and what is laid out in them takes more lines. The world fills the window: its page of
+    1280 × 720 points, as large as fits, stands in the middle, and `view` reaches beyond it on two sides. Text has the
+    same size on both. Nothing is scaled after drawing: another window size is drawn anew, and shapes and strings are
     cached per size.
 
     Attributes:
         surface: what is drawn on, in the window's pixels; what lies outside it is clipped.
         scale: pixels per point.
-        view: all that is seen, in points: the page, and what the window shows beside or above and below it.
-        origin: where the page's top left corner lies on the surface, in pixels.
-        moved: how far the page was moved to an edge of the view by `at`, in points.
-        size: the page's width and height in pixels.
+        type: pixels per point of text.
+        view: all that is seen, in points.
+        origin: where the point (0, 0) lies on the surface, in pixels.
+        size: the width and height in pixels of the page, or of all that is seen.
+        row: points at the foot of what is read that are a message's now.
         palette: the player's colours for within and beyond limits.
-        zoom: factor by which the player wants text enlarged; `reading` follows it.
-        grows: whether small text is enlarged by `typeface.grow`, instead of everything by `zoom`.
+        zoom: factor by which the player wants text enlarged.
         pointer: position of the mouse in points; None while it is not in use.
         explained: areas of this frame that can be explained, in the order in which they were drawn.
 
@@ -62,10 +65,9 @@ class Canvas:
 
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
-        self.scale, self.zoom, self.grows = 0.0, 1.0, True
-        self.view = PAGE.copy()
+        self.scale, self.zoom, self.row = 0.0, 1.0, 0.0
         self._whole: Canvas | None = None
-        self.moved: Point = (0.0, 0.0)
+        self._type = 0.0  # of a canvas that is no part of a window
         self.pointer: Point | None = None
         self.explained: deque[Explanation] = deque(maxlen=_MOST_EXPLAINED)
         self.attach(window)
@@ -81,51 +83,39 @@ class Canvas:
         self.scale = scale
         window.fill(NIGHT0)
         self.surface, self.origin = window, ((width - self.size[0]) // 2, (height - self.size[1]) // 2)
-        self.view.update(-self.origin[0] / scale, -self.origin[1] / scale, width / scale, height / scale)
+        self.view = pygame.FRect(-self.origin[0] / scale, -self.origin[1] / scale, width / scale, height / scale)
+
+    @property
+    def type(self) -> float:
+        """Pixels per point of text, which is alike on all canvases of a window."""
+        return self._type or max(self.whole.scale, 1.0) * self.zoom
 
     @property
     def whole(self) -> Canvas:
-        """The canvas of the whole window, of which this one may be a view."""
+        """The canvas of the world, of which this one may be what is read before it."""
         return self._whole or self
 
     @property
     def reading(self) -> Canvas:
-        """The whole window as a canvas for text that flows, with the window's own corner as the point (0, 0).
-
-        A point is never less than a pixel, so text of 12 points can be read in any window: in a small or narrow one
-        there are fewer points, and what is laid out in them takes more lines. Larger text is a larger point.
-        """
+        """The whole window as a canvas for what is read."""
         whole = self.whole
         reading = copy(whole)
-        reading._whole, reading.grows = whole, False
-        reading.scale = max(whole.scale, 1.0) * self.zoom
+        reading._whole, reading.scale = whole, whole.type
         reading.size, reading.origin = whole.surface.get_size(), (0, 0)
         width, height = reading.size
-        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale)
+        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale - whole.row)
         reading.pointer = None if whole.pointer is None else reading.points(whole.pixels(whole.pointer))
         return reading
 
-    def at(self, across: int, down: int) -> Canvas:
-        """Return this canvas with its page moved to an edge of the view: -1 left or top, 1 right or bottom, 0 neither.
+    def above(self, foot: float) -> Canvas:
+        """Return the canvas of the world as it is seen above rows at the foot of the window, which are so high.
 
-        What is laid out beside an edge of the page is drawn on it, and stands beside that edge of the window.
+        `foot` is in points of text. As much of the rows as `GROUND` stands on the ground itself.
         """
-        if self.view == PAGE:
-            return self
-        x, y = moved(self.view, across, down)
-        canvas = copy(self)
-        canvas.origin = self.origin[0] + self.px(x), self.origin[1] + self.px(y)
-        canvas.view = self.view.move(-x, -y)
-        canvas._whole, canvas.moved = self.whole, (self.moved[0] + x, self.moved[1] + y)
-        canvas.pointer = None if self.pointer is None else (self.pointer[0] - x, self.pointer[1] - y)
-        return canvas
-
-    @property
-    def ungrown(self) -> Canvas:
-        """This canvas, on which text has the size that is said: for rows, which measure it with its growth."""
-        canvas = copy(self)
-        canvas.grows, canvas._whole = False, self.whole
-        return canvas
+        world = copy(self.whole)
+        world._whole, world.view = self.whole, self.whole.view.copy()
+        world.view.height -= max(0.0, foot * self.type / world.scale - GROUND)
+        return world
 
     def px(self, points: float) -> int:
         """Return a length in whole pixels."""
@@ -163,8 +153,8 @@ class Canvas:
     def _on(self, surface: pygame.Surface) -> Canvas:
         """Return a canvas on a surface of its own, which is no part of the window; of it nothing is explained."""
         own = copy(self)
-        own.surface, own.origin, own.moved = surface, (0, 0), (0.0, 0.0)
-        own.view, own._whole = PAGE.copy(), None
+        own.surface, own.origin, own.view = surface, (0, 0), PAGE.copy()
+        own._whole, own._type = None, self.type
         own.explained = deque(maxlen=0)
         return own
 
@@ -184,7 +174,10 @@ class Canvas:
 
     def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
         """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
-        self.explained.append(Explanation(pygame.FRect(box).move(self.moved), what, now))
+        x, y, width, height = pygame.FRect(box)
+        (left, top), share = self.pixels((x, y)), self.scale / self.type
+        area = pygame.FRect(left / self.type, top / self.type, width * share, height * share)
+        self.explained.append(Explanation(area, what, now))
 
     # Text
 
@@ -205,13 +198,12 @@ class Canvas:
 
         `position` is on the *baseline*: its left end, middle or right end as `align` says, so that texts
         of different sizes stand on one line when given the same y. `tabular` gives every digit the same
-        width and takes digits from a cache one by one: use it for every figure that changes. Text that is
-        made larger for those who want it grows no further than `room`, in points; a translation that is longer than
-        the English shrinks to it, but never below the smallest text of the game.
+        width and takes digits from a cache one by one: use it for every figure that changes. A translation that is
+        longer than the English shrinks to `room`, in points, but never below the smallest text of the game.
         """
         scale, (left, top) = self.scale, self.origin
         parts, width, above, below = typeface.line(
-            string, self.grown(size), weight, colour, tabular, scale, room, self.least(size)
+            string, size, weight, colour, tabular, self.type, room * scale / self.type, least(size)
         )
         x, y = left + position[0] * scale - SHIFT[align] * width, top + round(position[1] * scale)
         if alpha >= 1:
@@ -225,16 +217,7 @@ class Canvas:
         self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
     ) -> float:
         """Return the width in points of `text` with the same arguments."""
-        pixels = typeface.fitting(string, self.grown(size), weight, tabular, self.scale, math.inf, size)
-        return typeface.span(string, pixels, weight, tabular) / self.scale
-
-    def least(self, size: float) -> float:
-        """Return the least size of a text with too little room, in points: English always fits, others are longer."""
-        return size if texts.LANGUAGE == ENGLISH else max(_LEAST * size, min(size, LABEL / max(self.scale, 1.0)))
-
-    def grown(self, size: float) -> float:
-        """Return the size at which a text of this size is written here, both in points."""
-        return typeface.grown(size) if self.grows else size
+        return typeface.span(string, round(size * self.type, 2), weight, tabular) / self.scale
 
     def _blit(self, surface: pygame.Surface, position: tuple[int, int], alpha: float = 1.0) -> None:
         if alpha >= 1:  # as it is kept
@@ -352,6 +335,6 @@ class Canvas:
         return surface, (round(x) - half, round(y) - half)
 
 
-def moved(view: pygame.FRect, across: int, down: int) -> Point:
-    """Return how far a page is moved to an edge of the view, or two, in points; see `Canvas.at`."""
-    return ((0.0, view.right - VIEW_SIZE[0], view.left)[across], (0.0, view.bottom - VIEW_SIZE[1], view.top)[down])
+def least(size: float) -> float:
+    """Return the least size of a text with too little room, in points: English always fits, others are longer."""
+    return size if texts.LANGUAGE == ENGLISH else max(_LEAST * size, min(size, LABEL))

@@ -12,22 +12,22 @@ from game.drawing.typeface import Weight
 
 # Sizes in points that most screens use, and the letters of most words, a few at a time.
 _FONTS: Final[dict[Weight, tuple[float, ...]]] = {
-    "regular": (12.5, 15.0, 11.5, 13.5, 22.0, 14.0, 18.0),
-    "medium": (12.5, 11.5, 15.0),
+    "regular": (12.5, 15.0, 12.0, 13.5, 22.0, 14.0, 18.0),
+    "medium": (12.5, 12.0, 15.0),
     "light": (34.0, 30.0),
-    "code": (11.5,),
+    "code": (12.0,),
 }
 _LETTERS: Final = ("eatoinsrhldcumfpgwybvkxjqz", "0123456789 .,:;-–'%()[]/=+*_·°", "TASDPCIWRMLNFEHBGOVUKYQJXZ")
 _FEW: Final = 25_000  # pixels of a picture that could be painted in the time that a few letters take
 
 
 def begin(scale: float) -> None:
-    """Load letters in pieces from now on, for a window of so many pixels a point and the present size of text."""
-    _loading(scale, typeface.growth())
+    """Load letters in pieces from now on, for text of so many pixels a point."""
+    _loading(scale)
 
 
 @lru_cache(maxsize=1)  # which keeps it until it is done
-def _loading(scale: float, growth: float) -> InPieces[None]:  # noqa: ARG001 - another size of text has other letters
+def _loading(scale: float) -> InPieces[None]:
     return InPieces(partial(_load, scale))
 
 

@@ -9,7 +9,6 @@ from weakref import ref
 
 import pygame
 
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 
 T = TypeVar("T")
@@ -35,7 +34,7 @@ class PaintCache:
     ) -> None:
         """Draw a picture with its origin at the corner of `box`; call `paint` only for a new `shows`, its contents."""
         x, y, width, height = pygame.FRect(box)
-        key = (canvas.size, canvas.palette, typeface.growth(), width, height, shows)
+        key = (canvas.scale, canvas.type, canvas.palette, width, height, shows)
         painted = self._painted.get(key)
         if painted is None:
             if len(self._painted) >= self._most:

@@ -30,13 +30,11 @@ FIGURE: Final = 34.0
 TITLE: Final = 22.0
 TEXT: Final = 15.0
 SMALL: Final = 12.5
-LABEL: Final = 11.5
-CAPTION: Final = 12.0  # the least size where text flows
+LABEL: Final = 12.0  # the least size
+CAPTION: Final = 12.0
 
-# Factors by which text is enlarged, by the setting's name. Where words are placed by hand there is room for less, and
-# between the two sizes of GROWS the factor falls to 1: large text can be read as it is.
+# Factors by which text is enlarged, by the setting's name.
 TEXT_SIZES: Final = {"normal": 1.0, "large": 1.3, "largest": 1.6}
-GROWS: Final = (15.0, 34.0)
 
 STEP: Final = 8
 MARGIN: Final = 64

@@ -22,7 +22,7 @@ from ai.files import CONTROLS
 from game.core import texts
 from game.core.catalogue import ENGLISH
 from game.drawing.glyphs import SIGN, draw_sign, sign_width
-from game.drawing.tokens import GROWS, Colour
+from game.drawing.tokens import Colour
 
 Weight = Literal["extralight", "light", "regular", "medium", "semibold", "code"]
 
@@ -47,12 +47,6 @@ _LIFT: Final = 0.82
 _INK: Final = (255, 255, 255)
 
 
-class _Growth:
-    """Factor by which small text is enlarged, as the player chose."""
-
-    factor = 1.0
-
-
 def _oversampling(pixels: float) -> int:
     return 4 if pixels < 30 else 2
 
@@ -66,30 +60,6 @@ def _font(pixels: float, weight: Weight) -> pygame.font.Font:
 def _opened(pixels: int, weight: Weight) -> pygame.font.Font:
     file = font_files[_FILES[weight]] if weight != "code" else str(files("pygame_gui") / _CODE)
     return pygame.font.Font(file, pixels)
-
-
-def grow(factor: float) -> None:
-    """Enlarge text from now on by `factor`; small text most, and large text not at all."""
-    if factor != _Growth.factor:
-        _Growth.factor = factor
-        grown.cache_clear()  # all else is kept by the size in pixels
-
-
-def growth() -> float:
-    """Return the present factor, set by `grow`."""
-    return _Growth.factor
-
-
-@lru_cache(maxsize=64)
-def grown(size: float) -> float:
-    """Return the enlarged size of a text of this size, both in points."""
-    small, large = GROWS
-    return size + (_Growth.factor - 1) * min(size, small) * min(max((large - size) / (large - small), 0.0), 1.0)
-
-
-def width(string: str, size: float, weight: Weight) -> float:
-    """Return the width of a string of this size, both in points, for layout."""
-    return reach(string, grown(size), weight)
 
 
 @lru_cache(maxsize=2048)
@@ -284,7 +254,7 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
 
 def open_letters(letters: str, size: float, weight: Weight, scale: float) -> None:
     """Load letters of a size in points, as the first text with them would."""
-    font = _font(round(grown(size) * scale, 2), weight)
+    font = _font(round(size * scale, 2), weight)
     font.size(letters)
     font.render(letters, True, _INK, (0, 0, 0))
 

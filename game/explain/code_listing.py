@@ -41,27 +41,26 @@ def draw_listing(
     on the right, or a row below their line where they need more than half the box.
     """
     area, notes = pygame.FRect(box), notes or {}
-    letter = typeface.digit_width(canvas.grown(LABEL), "code")
+    letter = typeface.digit_width(LABEL, "code")
     widths = {number: canvas.text_width(note, size=LABEL, tabular=True) + _SPARE for number, note in notes.items()}
     below = {number for number, width in widths.items() if width > area.width / 2}  # in a row of its own
     widest = max((width for number, width in widths.items() if number not in below), default=0.0)
     beside = max(area.width / 3, widest) if notes else -_BETWEEN
     room = int((area.width - _NUMBER - beside - _BETWEEN) // letter)
-    leading = _LEADING * canvas.grown(LABEL) / LABEL
-    canvas.text(source.path, (area.left, area.top + leading * 0.8), size=LABEL, colour=MUTE)
-    top = area.top + leading * 1.4
+    canvas.text(source.path, (area.left, area.top + _LEADING * 0.8), size=LABEL, colour=MUTE)
+    top = area.top + _LEADING * 1.4
     rows: list[tuple[int, str, bool]] = []
     for number, line in source.lines:
         rows += _broken(number, line, max(room, 20))
         rows += [(number, "", False)] if number in below else []
-    most = int((area.bottom - top) // leading)
+    most = int((area.bottom - top) // _LEADING)
     shown = _around(rows, current, most)
     for place, (number, text, begins) in enumerate(shown):
-        y = top + (place + 0.8) * leading
+        y = top + (place + 0.8) * _LEADING
         lit = number == current
         if lit:
-            canvas.fill(canvas.rect(area.left, y - 0.76 * leading, area.width, leading), LINE)
-            canvas.fill(canvas.rect(area.left, y - 0.76 * leading, 2, leading), NET)
+            canvas.fill(canvas.rect(area.left, y - 0.76 * _LEADING, area.width, _LEADING), LINE)
+            canvas.fill(canvas.rect(area.left, y - 0.76 * _LEADING, 2, _LEADING), NET)
         if begins:
             canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
                         colour=NET if lit else FAINT, align="right")  # fmt: skip
@@ -77,10 +76,9 @@ def draw_listing(
 
 def listing_height(source: Source, width: float) -> float:
     """Return how high all of a source is, drawn so wide without notes, in points."""
-    size = typeface.grown(LABEL)
-    room = int((width - _NUMBER) // typeface.digit_width(size, "code"))
+    room = int((width - _NUMBER) // typeface.digit_width(LABEL, "code"))
     rows = sum(len(list(_broken(number, line, max(room, 20)))) for number, line in source.lines)
-    return (rows + 2) * _LEADING * size / LABEL
+    return (rows + 2) * _LEADING
 
 
 def _broken(number: int, line: str, room: int) -> Iterator[tuple[int, str, bool]]:

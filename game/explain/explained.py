@@ -79,8 +79,9 @@ class Explained:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the tooltip of the area that is pointed at, or that is the next to be explained."""
-        areas = canvas.explained
-        if self.stepping and areas:
+        areas = [area for area in canvas.explained if area.box.colliderect(canvas.view)]
+        self.stepping &= bool(areas)
+        if self.stepping:
             area = areas[self._number % len(areas)]
             canvas.outline(area.box.inflate(8, 6), 6, INK, 1, 0.8)
             _draw(canvas, area)
@@ -125,4 +126,4 @@ def _rows(canvas: Canvas, line: str) -> list[TooltipRow]:
 
 
 def _lines(canvas: Canvas, words: str) -> tuple[str, ...]:
-    return lines(words, canvas.grown(LABEL), "regular", _WIDTH, canvas.scale)
+    return lines(words, LABEL, "regular", _WIDTH, canvas.scale)

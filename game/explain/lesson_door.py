@@ -1,13 +1,14 @@
-"""Door from a training run to one of its lessons: of which lander, and the answer when it comes."""
+"""Door from a training run to its lessons: of which lander, and the answer when it comes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
+
 from ai.explain.agent_lesson import Lesson
 from game.core import texts
-from game.core.scene import Transition, push
 from game.training.run import TrainingRun
 
 _PATIENCE: Final = 30  # frames without an answer, after which a message says that it is being made
@@ -16,9 +17,10 @@ _PATIENCE: Final = 30  # frames without an answer, after which a message says th
 class LessonDoor:
     """Door from a run to its lessons: one is asked for, and comes once; `note` shows a message to the player."""
 
-    def __init__(self, run: TrainingRun, note: Callable[[str], object]) -> None:
-        self._run, self._note = run, note
+    def __init__(self, run: TrainingRun, note: Callable[[str], object], rng: np.random.Generator) -> None:
+        self._run, self._note, self._rng = run, note, rng
         self._shown = run.lesson
+        self._moment: int | None = None  # of the lesson that was asked for last
         self._asked, self._waited = False, 0  # whether one was asked for, and how many frames ago
 
     def ask(self, slot: int, moment: int | None = None) -> None:
@@ -26,14 +28,24 @@ class LessonDoor:
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return
-        self._shown, self._asked, self._waited = self._run.lesson, True, 0
+        self._shown, self._asked, self._waited, self._moment = self._run.lesson, True, 0, moment
         self._run.ask("explain", slot, moment)
 
-    def _answer(self) -> Lesson | None:
+    def ask_another(self) -> None:
+        """Ask for the lesson of any lander, at the same moment."""
+        self.ask(int(self._rng.integers(self._run.config.num_envs)), self._moment)
+
+    def forget(self) -> None:
+        """Wait for a lesson no longer."""
+        self._asked = False
+
+    def answer(self) -> Lesson | None:
         """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
-        lesson: Lesson | None = self._run.lesson
         if not self._asked:
             return None
+        for note in self._run.poll():
+            self._note(note)
+        lesson: Lesson | None = self._run.lesson
         if lesson is None or lesson is self._shown:
             self._waited += 1
             if self._waited == _PATIENCE:
@@ -41,8 +53,3 @@ class LessonDoor:
             return None
         self._asked = False
         return lesson
-
-    def update(self) -> Transition | None:
-        """Open the lesson once it has come."""
-        lesson = self._answer()
-        return push("lesson", lesson) if lesson else None

@@ -60,7 +60,7 @@ class QValues:
 
     @property
     def expected(self) -> float:
-        """The expected score from here on, in points of reward: that of the best action."""
+        """What it expects from here on, in points of reward: that of the best action."""
         return max(self.points) if self.readable else math.nan
 
     @property
@@ -78,7 +78,7 @@ class QValues:
 
 
 def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, width: float) -> None:
-    """Draw the expected score, a bar for each action on the fixed scale, and the scale; in points.
+    """Draw the expected pay, a bar for each action on the fixed scale, and the scale; in points.
 
     `top` is the first baseline; the last is `HEIGHT` below it.
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Final
@@ -15,42 +15,29 @@ from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts
 from game.drawing.canvas import Canvas, Now, Point
+from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.paint_cache import PaintCache
 from game.drawing.shapes import Shape
-from game.drawing.tokens import (
-    CAPTION,
-    FAINT,
-    FIGURE,
-    HUMAN,
-    INK,
-    LABEL,
-    MARGIN,
-    MUTE,
-    NET,
-    NIGHT0,
-    SMALL,
-    TEXT,
-    VIEW_SIZE,
-    Colour,
-)
+from game.drawing.tokens import FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NET, NIGHT0, SMALL, STEP, Colour
 from game.flight import outcomes
 
 Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
-READOUTS: Final = 80.0  # points at the foot of a page that they take
 LITTLE_TIME: Final = 5.0  # seconds left, below which a pilot is warned
 LITTLE_FUEL: Final = 0.2  # share of the tank left, likewise
-_LABEL_LINE: Final = 663.0
-_FIGURE_LINE: Final = 697.0
+_PITCH: Final = 124.0  # points from one read-out to the next, and at least
+_NARROW: Final = 88.0
+_LABEL_LINE, _FIGURE_LINE = 12.0, 46.0  # baselines, in points below the top of a read-out
+_BAR_LINE: Final = 57.0
+_HEIGHT: Final = 64.0
 _BAR: Final = (92.0, 2.0)
-_BAR_TOP: Final = 708.0
-_TITLE_ROOM: Final = 400.0  # points for who flies
-_SHADE, _SHADE_TOP = 0.6, 640.0  # greatest darkness behind the read-outs, and the row from which it begins
+_SMALLER: Final = 26.0  # size of a figure that has little room
+_SHADE: Final = 0.8  # greatest darkness behind the read-outs
+_SIDES: Final = 0.05  # of a view's width, left free at either side
 _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
-_ASIDE, _ABOVE = 4.0, 28.0
-_WORDS: Final = (180.0, 78.0)
-_LABEL_ROOM: Final = 112.0  # points from one column to the next, without a gap
+_ASIDE, _ABOVE = 4.0, 6.0
+_WORDS: Final = (180.0, 66.0)
 _FIGURES: Final = PaintCache(64)
 _PLENTY_OF_TIME: Final = 120.0
 _STILL: Final = 0.05  # m/s, and half a degree, below which a figure has no direction
@@ -153,35 +140,33 @@ def _now(name: str, value: float, limit: float = math.inf) -> str:
 
 @dataclass(frozen=True)
 class Gauge:
-    """What a read-out reads, and its place.
+    """What a read-out reads.
 
     Attributes:
-        column: its left end, in points, in a flight of the player's.
         read: makes it, given an environment and a slot.
-        watched: its left end where choices stand on the left; None for one that is not shown there.
+        pilots: whether a pilot needs it all the time; these stand on the left.
         cause: the crash that is named by it, if any.
         felt: which of an impact's figures that crash has.
 
     """
 
-    column: float
     read: Callable[[LanderEnv, int], Readout]
-    watched: float | None = None
+    pilots: bool = False
     cause: Cause | None = None
     felt: int = 0
 
 
 # Four on the left, three on the right: the landing pad stands in the middle. A name is its key in the texts.
 GAUGES: Final = {
-    "altitude": Gauge(64.0, _altitude, 758.0),
-    "descent": Gauge(194.0, _descent, 880.0, Cause.HARD, 0),
-    "drift": Gauge(324.0, _drift, 1002.0, Cause.SLIDING, 1),
-    "tilt": Gauge(454.0, _tilt, 1124.0, Cause.TILTED, 2),
-    "thrust": Gauge(880.0, _thrust),
-    "fuel": Gauge(1002.0, _fuel),
-    "time": Gauge(1124.0, _time),
+    "altitude": Gauge(_altitude, pilots=True),
+    "descent": Gauge(_descent, pilots=True, cause=Cause.HARD, felt=0),
+    "drift": Gauge(_drift, pilots=True, cause=Cause.SLIDING, felt=1),
+    "tilt": Gauge(_tilt, pilots=True, cause=Cause.TILTED, felt=2),
+    "thrust": Gauge(_thrust),
+    "fuel": Gauge(_fuel),
+    "time": Gauge(_time),
 }
-PILOT: Final = tuple(name for name, gauge in GAUGES.items() if gauge.watched is not None)  # what a pilot needs
+PILOT: Final = tuple(name for name, gauge in GAUGES.items() if gauge.pilots)
 
 
 def flight_readouts(env: LanderEnv, slot: int = 0) -> dict[str, Readout]:
@@ -208,42 +193,67 @@ def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]
     return {**readouts, named: replace(readouts[named], figure=figure, within=False)}
 
 
-def draw_flight(canvas: Canvas, readouts: dict[str, Readout], names: Iterable[str] = GAUGES) -> None:
-    """Draw those of a flight's read-outs that are named, each in its own column."""
-    shown = [name for name in names if name in readouts]
-    _draw_readouts(canvas, [(GAUGES[name].column, readouts[name]) for name in shown])
+def foot_of(canvas: Canvas, names: Iterable[str]) -> pygame.FRect:
+    """Return where a flight's read-outs stand at the foot of its screen, in points."""
+    view = canvas.view
+    side = min(MARGIN, _SIDES * view.width)
+    cursor = Cursor(side, 0.0, view.width - 2 * side)
+    _arrange(cursor, tuple(names))
+    return pygame.FRect(side, view.bottom - cursor.y - STEP / 2, cursor.width, cursor.y)
 
 
-def draw_watched(canvas: Canvas, env: LanderEnv, slot: int) -> None:
-    """Draw what a pilot needs of a flight that is watched."""
-    readouts = flight_readouts(env, slot)
-    placed = ((gauge.watched, readouts[name]) for name, gauge in GAUGES.items())
-    _draw_readouts(canvas, [(column, readout) for column, readout in placed if column is not None])
+def draw_flight(canvas: Canvas, readouts: Mapping[str, Readout], names: Iterable[str] = GAUGES) -> None:
+    """Draw those of a flight's read-outs that are named at the foot of its screen."""
+    shown = {name: readouts[name] for name in names if name in readouts}
+    foot = foot_of(canvas, shown)
+    draw_shade(canvas, foot.top - STEP)
+    write_readouts(Cursor(foot.left, foot.top, foot.width, canvas.scale, canvas), shown)
 
 
-def _draw_readouts(canvas: Canvas, placed: Sequence[tuple[float, Readout]]) -> None:
-    """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
-    if canvas.whole is canvas:  # a page has no world behind it
-        width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
-        corner = 0, canvas.surface.get_height() - height
-        canvas.surface.blit(_shade((width, height)), corner, special_flags=pygame.BLEND_PREMULTIPLIED)
-    for x, readout in placed:
-        below = canvas.at(-1 if x < VIEW_SIZE[0] / 2 else 1, 1)
-        _draw_readout(below, x, readout)
-        if readout.what:
-            box = (x - _ASIDE, _LABEL_LINE - _ABOVE, _BAR[0] + 2 * _ASIDE, _BAR_TOP - _LABEL_LINE + _ABOVE + 8)
-            below.explain(box, readout.what, readout.now)
+def write_readouts(cursor: Cursor, shown: Mapping[str, Readout]) -> None:
+    """Write read-outs side by side, as a row: what a pilot needs on the left, and the rest at the right end."""
+    for name, box in _arrange(cursor, tuple(shown)).items():
+        if cursor.canvas:
+            _draw_readout(cursor.canvas, box, shown[name])
 
 
-def _draw_readout(canvas: Canvas, x: float, readout: Readout) -> None:
+def _arrange(cursor: Cursor, names: Sequence[str]) -> dict[str, pygame.FRect]:
+    """Return where each of these read-outs stands, in points; in two lines where one is too short."""
+    pilots, others = [name for name in names if name in PILOT], [name for name in names if name not in PILOT]
+    lines = [(pilots, others)] if len(names) * _NARROW <= cursor.width else [(others, []), (pilots, [])]
+    places = {}
+    for left, right in lines:
+        pitch = min(_PITCH, cursor.width / max(1, len(left) + len(right)))
+        starts = [cursor.left + number * pitch for number in range(len(left))]
+        starts += [cursor.right - pitch * (len(right) - number) for number in range(len(right))]
+        for name, start in zip([*left, *right], starts, strict=True):
+            places[name] = pygame.FRect(start, cursor.y, min(pitch - STEP, _BAR[0] + 2 * STEP), _HEIGHT)
+        cursor.gap(_HEIGHT if starts else 0.0)
+    return places
+
+
+def draw_shade(canvas: Canvas, top: float) -> None:
+    """Darken the ground below a place, in points: over craters and wrecks figures stay readable."""
+    height = canvas.surface.get_height() - canvas.px(top)
+    if height > 0:
+        shade = _shade((canvas.surface.get_width(), height))
+        canvas.surface.blit(shade, (0, canvas.px(top)), special_flags=pygame.BLEND_PREMULTIPLIED)
+
+
+def _draw_readout(canvas: Canvas, box: pygame.FRect, readout: Readout) -> None:
+    """Draw a read-out: the bar shows the distance from the limit, a mark by the label on which side."""
+    x, y, wide = box.left, box.top + _BAR_LINE, min(_BAR[0], box.width)
     colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
-    shows = readout.label, readout.figure, readout.unit, readout.within, readout.towards
-    box = (x - _ASIDE, _LABEL_LINE - _ABOVE, *_WORDS)
-    _FIGURES.draw(canvas, box, shows, partial(_paint_readout, readout=readout, colour=colour))
+    size = FIGURE if box.width > _BAR[0] else _SMALLER
+    shows = readout.label, readout.figure, readout.unit, readout.within, readout.towards, size
+    paint = partial(_paint_readout, readout=readout, colour=colour, size=size)
+    _FIGURES.draw(canvas, (x - _ASIDE, box.top - _ABOVE, *_WORDS), shows, paint)
     if readout.fill is not None:
-        canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
+        canvas.bar((x, y, wide, _BAR[1]), readout.fill, colour)
     if readout.limit is not None:
-        canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
+        canvas.line((x + readout.limit * wide, y - 3), (x + readout.limit * wide, y + 5), INK)
+    if readout.what:
+        canvas.explain(box.move(-_ASIDE, 0), readout.what, readout.now)
 
 
 @lru_cache(maxsize=2)
@@ -256,22 +266,18 @@ def _shade(size: tuple[int, int]) -> pygame.Surface:
     return shade.premul_alpha_ip()
 
 
-def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
+def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour, size: float) -> None:
     """Draw label, mark, figure and unit on a cached sheet, as most stay the same for some frames."""
-    line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
-    fits = LABEL * _LABEL_ROOM / canvas.text_width(readout.label, size=LABEL, weight="medium")
-    size = max(LABEL, min(CAPTION / canvas.scale, fits))  # twelve pixels, if the next column lets it
-    label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=size, colour=MUTE, weight="medium")
-    end = label.right + 9
+    top, line = _ABOVE + _LABEL_LINE, _ABOVE + _FIGURE_LINE
+    end = canvas.text(readout.label, (_ASIDE, top), size=LABEL, colour=MUTE, weight="medium").right + 9
     if readout.towards:
-        draw_arrow(canvas, (end + 5, _ABOVE - 4), 16.0 * readout.towards, INK)
+        draw_arrow(canvas, (end + 5, top - 4), 16.0 * readout.towards, INK)
         end += 24
     if readout.within is not None:
-        draw_mark(canvas, (end, _ABOVE - 4), readout.within)
-    figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=FIGURE, colour=colour, weight="light", tabular=True)
-    size = max(SMALL, CAPTION / canvas.scale)
-    gap, rise = (3, _CAPITAL * (FIGURE - size)) if readout.unit == "°" else (6, 0.0)
-    canvas.text(readout.unit, (figure.right + gap, line - rise), size=size, colour=MUTE)
+        draw_mark(canvas, (end, top - 4), readout.within)
+    figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=size, colour=colour, weight="light", tabular=True)
+    gap, rise = (3, _CAPITAL * (size - SMALL)) if readout.unit == "°" else (6, 0.0)
+    canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
 
 
 def draw_arrow(canvas: Canvas, middle: Point, reach: float, colour: Colour) -> None:
@@ -289,25 +295,6 @@ def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
         canvas.dot(place, 2.0, canvas.palette.good, 0.9)
     else:
         canvas.marker("triangle", place, 9, canvas.palette.warn)
-
-
-def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
-    """Draw who flies at the top, with a lamp before it, over a line in their colour."""
-    canvas, middle = canvas.at(0, -1), VIEW_SIZE[0] / 2
-    width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
-    lamp, half = (middle - width / 2 - 8, 36.0), max(90.0, width / 2 + 14)
-    canvas.glow(lamp, 14.0, colour, 0.8)
-    canvas.marker("circle", lamp, 8, colour)
-    line = (middle - half, 54, 2 * half, 2)
-    canvas.pill(line, FAINT, 0.5)
-    canvas.pill(line, colour)
-
-
-def draw_corner(canvas: Canvas, small: str, large: str) -> None:
-    """Draw the flight's name and its goal in the top left corner."""
-    canvas = canvas.at(-1, -1)
-    canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
-    canvas.text(large, (MARGIN, 58), size=TEXT)
 
 
 def yours(human: float) -> int:
@@ -335,15 +322,14 @@ def rate_colour(canvas: Canvas, percent: float) -> Colour:
     return canvas.palette.good if percent > 50 else INK
 
 
-def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None:
-    """Draw the share of flights that have landed with its baseline at `corner`, and both counts; none before any."""
+def write_landings(cursor: Cursor, landed: int, lost: int) -> None:
+    """Write the share of flights that have landed, and both counts; nothing before any has ended."""
     if landed + lost == 0:
         return
-    (left, top), share = corner, f"{100 * landed / (landed + lost):.0f}"
-    figure = canvas.text(
-        share, (left - 1, top), size=FIGURE, weight="light", tabular=True, colour=rate_colour(canvas, float(share))
-    )
-    canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
-    counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
-    canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)
-    canvas.explain((left - 4, top - 30, 180, 58), texts.EXPLAIN_LANDINGS)
+    share, top = f"{100 * landed / (landed + lost):.0f}", cursor.y
+    cursor.y += LEADING * FIGURE
+    if canvas := cursor.canvas:
+        colour, place = rate_colour(canvas, float(share)), (cursor.left - 1, top + BASELINE * FIGURE)
+        figure = canvas.text(share, place, size=FIGURE, weight="light", tabular=True, colour=colour)
+        canvas.text(texts.WATCH_LANDED, (figure.right + 6, place[1]), size=SMALL, colour=MUTE)
+    cursor.styled(texts.WATCH_COUNTS.format(landed=landed, lost=lost), SMALL, MUTE, tabular=True)

@@ -10,14 +10,17 @@ from typing import Final, Protocol
 from ai.flights.recording import Easing
 from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
+from ai.lander.missions import Mission
 from game.core import texts
 from game.core.settings import HELP, Settings
 from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import sentence, who
+from game.flight.outcomes import OutcomeCard
 
 # Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
 ASSISTS: Final = dict(zip(HELP, (0.0, 0.04, 0.64), strict=True))
+OWN: Final = 0.9  # share of the steps from which on a helped landing is the person's own
 TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
 _EASINGS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are named
 # Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
@@ -25,14 +28,12 @@ _OWN_HANDS: Final = frozenset({"toggle_thrust"})
 
 
 class Rules(Protocol):
-    """What a flight is flown as, as far as that decides what counts; see `game.scenes.play.challenge.Challenge`."""
+    """What a flight is flown as, as far as that decides what counts; see `game.scenes.play.challenge.Rules`."""
 
     kept: bool
     bar: str
     alone: bool
-
-    def medal(self, flight: Flight[Crew]) -> int:
-        """Return the medal of a flight that is over: 3 for gold, 2, 1, and 0 for none."""
+    mission: Mission | None
 
 
 def eased(settings: Settings) -> Easing:
@@ -57,7 +58,7 @@ class Credit:
     def __init__(self, flight: Flight[Crew], settings: Settings, rules: Rules) -> None:
         self._flight, self._settings, self._rules = flight, settings, rules
         self._used: set[str] = set()  # assists of the steps so far
-        self._shared = False
+        self._shared = self._handed_over = False
         self.alone, self.pace = rules.alone, 1.0
 
     def prepare(self) -> None:
@@ -66,8 +67,9 @@ class Credit:
         self.pace = min(self.pace, self._settings.pace)
 
     def follow(self) -> None:
-        """Record whether the step just flown was shared."""
+        """Record who had the stick in the step just flown."""
         self._shared |= self._flight.chooser.shared
+        self._handed_over |= self._flight.chooser.hand is StickHolder.NETWORK
 
     # Who flies
 
@@ -128,14 +130,18 @@ class Credit:
     @property
     def bar(self) -> str:
         """Reason why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty while it does."""
-        flight = self._flight
         if self._rules.bar:
             return self._rules.bar
-        if self.helped and flight.share < 1.0:
-            return "helped"
-        if flight.share < 1.0 or flight.chooser.hand is StickHolder.NETWORK:
-            return "handed_over"
+        if not self.own:
+            return "helped" if self.helped else "handed_over"
         return "" if _OWN_HANDS.issuperset(self._named) else "assists"
+
+    @property
+    def own(self) -> bool:
+        """Whether it is the person's own: they had the stick all the way, and help has changed a tenth at most."""
+        flight = self._flight
+        handed_over = self._handed_over or flight.chooser.hand is StickHolder.NETWORK
+        return not handed_over and flight.share >= (OWN if self._shared else 1.0)
 
     @property
     def barred(self) -> str:
@@ -144,10 +150,7 @@ class Credit:
 
     @property
     def counts(self) -> bool:
-        """Whether the person flew all of it, without assists that set it apart.
-
-        Help that stood by and changed nothing takes nothing away.
-        """
+        """Whether it is the person's own, without assists that set it apart."""
         return not self.bar
 
     @property
@@ -169,15 +172,14 @@ class Credit:
     @property
     def medal(self) -> int:
         """Medal of a flight that is over: 3 for gold, 2, 1, 0 for none."""
-        return self._rules.medal(self._flight) if self.counts else 0
+        mission, env = self._rules.mission, self._flight.env
+        if mission is None or not self.counts or self._flight.outcome is not Outcome.LANDED:
+            return 0
+        return mission.medal(float(env.fuel[0]), float(env.time[0]))
 
-    def score(self, best: int) -> str:
-        """Return the text for the score of a flight that is over; `best` is the score to beat, 0 for none."""
+    def add_to(self, card: OutcomeCard) -> None:
+        """Add to a flight's card what it has earned, what made it easier, and why it does not count."""
         points = landing_score(self._flight.env)
-        beaten = self.counts and points > best > 0
-        return (texts.SCORE_BEST if beaten else texts.SCORE).format(count=points) if points else ""
-
-    def reason(self, reason: str) -> str:
-        """Return the text below a card's title: `reason`, or why a landing does not count."""
-        landed = self._flight.outcome is Outcome.LANDED
-        return self.barred if landed and self.bar else reason
+        card.score, card.assists = texts.SCORE.format(count=points) if points else "", self.assists
+        if self._flight.outcome is Outcome.LANDED and self.bar:
+            card.reason = self.barred

@@ -18,6 +18,7 @@ from typing import Annotated, Any, Final, TypeVar
 
 from ai.files import (
     OneOf,
+    OtherVersionError,
     Share,
     Sized,
     Within,
@@ -38,7 +39,7 @@ from game.core import texts
 
 T = TypeVar("T")
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 7
+VERSION: Final = 8
 _LARGEST: Final = 2_000_000  # bytes
 LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
@@ -139,6 +140,8 @@ def read(path: Path) -> Record:
     except OSError as error:
         said = texts.FLIGHT_TOO_LARGE if error.errno == errno.EFBIG else error.strerror or error
         raise ValueError(f"{path.name}: {said}") from error
+    except OtherVersionError as error:
+        raise ValueError(f"{path.name}: {error}") from error
     except ValueError as error:
         raise ValueError(texts.FLIGHT_DAMAGED.format(name=path.name, problem=brief(error))) from error
 
@@ -164,8 +167,11 @@ def from_text(text: str) -> Record:
     values = parse_json(text)
     try:
         check_header(values, FORMAT, VERSION)
+    except OtherVersionError as error:
+        held = brief(values.get("version"), 20)
+        raise OtherVersionError(texts.FLIGHT_OTHER_VERSION.format(found=held, version=VERSION)) from error
     except ValueError as error:
-        raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
+        raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT)) from error
     file = read_as(_FlightFile, values)
     if file.entry.course not in COURSES:
         raise ValueError(texts.FLIGHT_MISSION.format(name=brief(file.entry.course, 40)))

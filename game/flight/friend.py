@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pygame
 
-from ai.flights.recording import SharedFlight
+from ai.flights.recording import ClaimedFlight
 from game.core import texts
 from game.core.scene import Push, Scene, push
-from game.flight import sharing
+from game.flight import codes
 from game.flight.flight_file import Record
 from game.input.controls import copies_or_pastes
 from game.ui.clipboard import give, pasted
@@ -28,7 +28,7 @@ def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push |
     if event.type == pygame.DROPFILE:
         path = Path(event.file)
         try:
-            return _page(sharing.flight_in_file(path))
+            return _page(codes.flight_in_file(path))
         except ValueError as error:
             if not scene.takes_files:
                 context.note(texts.CODE_FILE_REFUSED.format(name=path.name, reason=error))
@@ -39,7 +39,7 @@ def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push |
 
 def copy(context: Context, record: Record) -> None:
     """Copy a flight as a code."""
-    give(context, sharing.code(record), texts.CODE_COPIED)
+    give(context, codes.code(record), texts.CODE_COPIED)
 
 
 def paste(context: Context) -> Push | None:
@@ -52,11 +52,11 @@ def paste(context: Context) -> Push | None:
 
 def _page_of_text(context: Context, text: str) -> Push | None:
     try:
-        return _page(sharing.flight_in(text))
+        return _page(codes.flight_in(text))
     except ValueError as error:
         context.note(texts.CODE_PASTE_REFUSED.format(reason=error))
     return None
 
 
-def _page(flight: SharedFlight) -> Push:
-    return push("replay", sharing.record_of(flight, time.time()), flight)
+def _page(flight: ClaimedFlight) -> Push:
+    return push("replay", codes.record_of(flight, time.time()), flight)

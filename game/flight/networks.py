@@ -14,8 +14,7 @@ from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS
 from game.core import texts
-from game.core.collection import looks_like_item
-from game.core.kept import Kept
+from game.core.shelf import Kept, looks_like_item
 
 DECISION_STEPS: Final = 4  # physics steps per decision of a policy that does not say
 DEFAULT: Final = "modern"
@@ -103,11 +102,9 @@ def flew(name: str) -> str:
     return name if is_own(name) else texts.THE_NETWORK
 
 
-def pause_labels(name: str) -> tuple[str, str]:
-    """Return what leads to the networks, and to the pilots, while that one flies."""
-    if is_own(name):
-        return texts.PAUSE_TAKE_NETWORK, texts.PAUSE_PILOT.format(name=name)
-    return texts.PAUSE_NETWORK.format(name=word(name)), texts.PILOTS_OPEN
+def pause_label(name: str) -> str:
+    """Return what leads from a flight to the networks, while that one, or a pilot of the player's own, flies."""
+    return texts.PAUSE_PILOT.format(name=name) if is_own(name) else texts.PAUSE_NETWORK.format(name=word(name))
 
 
 def titled(name: str) -> str:

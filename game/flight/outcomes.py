@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -18,9 +18,12 @@ _GOOD: Final = 0.4  # of a limit, up to which a landing is a good one
 TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the fall: that came first
 
 
-@dataclass(frozen=True)
+@dataclass
 class OutcomeCard:
-    """Contents of an outcome card; `figures` are label, value and unit, `human` the person's share of the steps."""
+    """Contents of an outcome card, to which all that follow a flight add what they know.
+
+    `figures` are label, value and unit, `human` the person's share of the steps.
+    """
 
     good: bool
     title: str
@@ -41,7 +44,7 @@ class OutcomeCard:
     rung: int | None = None  # place on the ladder of starts, None off it
     climb: str = ""  # what the flight has changed there
     quality: str = ""  # how well it was landed
-    compared: tuple[tuple[str, str], ...] = ()  # other scores from the same start, in words and a figure
+    compared: dict[str, str] = field(default_factory=dict)  # other scores from the same start, by their names
 
     @property
     def stepped_in_words(self) -> str:

@@ -16,7 +16,7 @@ from game.flight.days import FILE_NAME as DAYS
 from game.flight.logbook import FOLDER, LOGBOOK
 
 FILES: Final = (LOGBOOK, DAYS, FOLDER)  # files and folders of the player's folder that are progress
-SETTINGS: Final = ("tutored", "first_flown", "rung", "learnt", "chapter")  # and fields of the settings
+SETTINGS: Final = ("tutored", "first_flown", "rung", "learnt")  # and fields of the settings
 
 
 def put_away(user_dir: Path, settings: Settings) -> Path:

@@ -18,8 +18,6 @@ from game.ui.context import Context
 class ErrorScene(Scene):
     """Error screen in place of all scenes; any confirmation leads to the menu."""
 
-    flows = True
-
     def __init__(self, context: Context, error: Exception, log: Path) -> None:
         super().__init__(context)
         self._reason = f"{type(error).__name__}: {error}"

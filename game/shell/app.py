@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 LOG_NAME: Final = "tranquility.log"
 _STEADY: Final = 0.1  # seconds of constant size before a redraw: a landscape takes too long to paint while resizing
-_PLACED: Final = 5 / 12  # share of the enlargement for which screens have room whose words do not flow
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 _log = logging.getLogger("tranquility")
 
@@ -86,7 +85,6 @@ class App:
         self._follow_window()
         context.note = self.notes.show
         context.apply_settings = self.apply_settings
-        context.view = self.canvas.view
         context.reading = lambda: self.canvas.reading
         self._look()
         context.sound.follow(context.settings)
@@ -120,6 +118,7 @@ class App:
         self._last = time_now
         for _ in range(steps):
             self.notes.update()
+            self.canvas.row = self.notes.height(self.canvas.reading)
             if problem := self.settings_writer.problem():
                 self.notes.show(problem)
             self._guarded(self.scenes.update)
@@ -166,14 +165,13 @@ class App:
         self.canvas.attach(self.window.surface)
         self._attached_size = self.window.size
         self._frame_rate = self.window.frame_rate
-        letters.begin(self.canvas.scale)
+        letters.begin(self.canvas.type)
 
     def _look(self) -> None:
         """Apply the player's palette and size of text."""
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
         self.canvas.zoom = TEXT_SIZES.get(self.context.settings.text_size, 1.0)
-        typeface.grow(1 + _PLACED * (self.canvas.zoom - 1))
-        letters.begin(self.canvas.scale)
+        letters.begin(self.canvas.type)
 
     def apply_settings(self) -> None:
         """Apply the settings to the window and the sound, and save them."""
@@ -275,16 +273,10 @@ class App:
         if page := arrival(event, self.scenes.top, self.context):
             self.scenes.apply(page)
             return
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            canvas = self.scenes.top.laid_on(self.canvas)
-            for row in self.scenes.top.hint_rows(canvas):
-                if (hint := row.at(canvas, event.pos)) and hint.run:
-                    self.scenes.apply(hint.run())
-                    return
         self.scenes.handle_event(event)
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
-        canvas = self.scenes.top.laid_on(self.canvas)
+        canvas = self.canvas.reading
         values = {**event.dict, "pos": canvas.points(event.pos)}
         if event.type == pygame.MOUSEMOTION:
             values["rel"] = (event.rel[0] / canvas.scale, event.rel[1] / canvas.scale)
@@ -297,7 +289,7 @@ class App:
         self.canvas.explained.clear()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._guarded(lambda: self.scan.draw(self.scenes.top, self.canvas))
-        self.notes.draw(self.canvas, low=self.scenes.top.notes_low)
+        self.notes.draw(self.canvas.reading)
         self.window.flip()
 
     def _save_screenshot(self) -> None:

@@ -1,4 +1,4 @@
-"""Library of the player's saved training runs, one folder each, with a summary that needs no network read."""
+"""What the player has trained, one folder each: runs of landers, known by a small file, and digit networks."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 from ai.agent.storage import LAST
-from ai.files import Share, Within, brief, inside, read_as, read_json
+from ai.digits.classifier import NETWORK
+from ai.files import CONFIG, Share, Within, brief, inside, read_as, read_json
 from ai.run import TRAINING_FILE
 from ai.training.config import LANDER
 from game.core import texts
-from game.core.collection import Collection, ItemKind, leads_nowhere, there
-from game.core.names import LONGEST_NAME, reason
+from game.core.shelf import LONGEST_NAME, Collection, leads_nowhere, reason, there
 from game.flight.networks import PARTS, PLAYERS
 
-_CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of these is a run, complete or not
+FOLDER: Final = "digits"  # in the player's folder: fixes of the shipped digit networks, and `RUNS`
+RUNS: Final = "runs"
+FIXES: Final = "fixes"  # in the folder of a player's own digit network
+NAMES: Final = ("modern", "classic")  # of the shipped digit networks
+_MOST: Final = 10**15  # of any count
 _YEAR_3000: Final = 32_503_680_000.0  # in seconds since 1970; the latest date that every system supports
-_MOST: Final = 10**15  # limit of any count
-_MOST_SEED: Final = 10**LONGEST_NAME
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class SavedRun:
     name: str
     folder: Path
     saved: float = 0.0  # seconds since 1970
-    preset: str = ""  # the nearest to its settings
+    preset: str = ""  # that its settings began as
     changes: int = 0  # settings that differ from that
     seed: int = 0
     decisions: int = 0
@@ -52,24 +54,46 @@ class _TrainingFile:
     env: str
     preset: str
     changes: dict[str, Any]
-    seed: Annotated[int, Within(0, _MOST_SEED)]
+    seed: Annotated[int, Within(0, 10**LONGEST_NAME)]
     decisions: Annotated[int, Within(0, _MOST)]
     seconds: Annotated[float, Within(0, _MOST)]
     best: _Best | None  # None for a young run, which has not been validated yet
 
 
+class Library(Collection[SavedRun]):
+    """Library of runs in a player's folder."""
+
+    parts = (*PARTS, TRAINING_FILE)
+
+    def __init__(self, user_dir: Path) -> None:
+        super().__init__(user_dir / PLAYERS)
+
+    @property
+    def rescued_name(self) -> str:
+        """The name to suggest for a run that was left behind without one."""
+        return texts.RUN_RESCUED
+
+    def read(self, folder: Path, name: str) -> SavedRun:
+        """Return the summary of a run from its small file. Never raises: `problem` says what is wrong."""
+        return read_run(folder, name)
+
+    def runs(self) -> list[SavedRun]:
+        """Return the summary of every run, the latest first, damaged ones too."""
+        return sorted(self.items(), key=lambda run: (-run.saved, run.name))
+
+
 def read_run(folder: Path, name: str = "") -> SavedRun:
     """Return the summary of a run from its small file. Never raises: `problem` says what is wrong."""
     name = name or folder.name
-    file = folder / TRAINING_FILE
     saved = 0.0
-    for dated in (folder, file):
+    for dated in (folder, folder / TRAINING_FILE):
         with suppress(OSError):
             saved = min(max(dated.lstat().st_mtime, 0.0), _YEAR_3000)
+    flyable = True
     try:
         if leads_nowhere(folder):
             return SavedRun(name, folder, saved, problem=texts.RUN_LINK)
-        missing = [part for part in _CLAIMS if not there(folder / part)]
+        missing = [part for part in Library.parts if not there(folder / part)]
         if missing:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
@@ -89,15 +113,53 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
-RUNS: Final = ItemKind(_CLAIMS, read_run, lambda: texts.RUN_RESCUED)
+# Networks that read digits
 
 
-class Library(Collection[SavedRun]):
-    """Library of runs in a player's folder."""
+@dataclass(frozen=True)
+class SavedDigitModel:
+    """Folders of a network and of its fixes, the latter numbered."""
+
+    folder: Path
+    fixes: Path
+
+    def fixed(self) -> list[Path]:
+        """Return the folders of its fixes in order; each builds on those before."""
+        with suppress(OSError):
+            numbered = [path for path in self.fixes.iterdir() if path.name.isdecimal()]
+            return sorted(numbered, key=lambda path: int(path.name))
+        return []
+
+    def versions(self) -> list[Path]:
+        """Return the folders of all versions of the network, the one with all fixes first."""
+        return [*reversed(self.fixed()), self.folder]
+
+
+class DigitModels(Collection[SavedDigitModel]):
+    """A player's own digit networks."""
+
+    parts = (CONFIG, NETWORK, TRAINING_FILE)
 
     def __init__(self, user_dir: Path) -> None:
-        super().__init__(user_dir / PLAYERS, RUNS)
+        super().__init__(user_dir / FOLDER / RUNS)
 
-    def runs(self) -> list[SavedRun]:
-        """Return the summary of every run, the latest first, damaged ones too."""
-        return sorted(self.items(), key=lambda run: (-run.saved, run.name))
+    def read(self, folder: Path, name: str) -> SavedDigitModel:  # noqa: ARG002
+        """Return the folders of a network."""
+        return SavedDigitModel(folder, folder / FIXES)
+
+
+def models_by_name(models_dir: Path, user_dir: Path) -> dict[str, SavedDigitModel]:
+    """Return all digit networks by name, damaged ones too; the player's own come last.
+
+    A player's network with the name of a shipped one gets a distinct name, and is not left out.
+    """
+    found = {name: SavedDigitModel(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
+    for model in DigitModels(user_dir).items():
+        name = model.folder.name
+        found[texts.NETWORK_YOURS.format(name=name) if name.casefold() in NAMES else name] = model
+    return found
+
+
+def called(name: str) -> str:
+    """Return the label of a digit network on the screen."""
+    return texts.DIGITS_NETWORKS.get(name, name)

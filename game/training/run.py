@@ -15,23 +15,22 @@ from ai.nn import ModelFormatError
 from ai.training.config import InForce
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
-from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
+from ai.training.messages import FirstLanding, NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
-from game.core.collection import Collection
-from game.core.names import LibraryError
+from game.core.shelf import Collection, LibraryError
 from game.core.worker import Worker, WorkerState
 from game.training.record import EarlierRun, Record, put_beside
 from game.training.run_settings import RunKind
 
-# Decisions of each lander per second, slow as in real flight, and as fast as possible.
-PACES: Final[tuple[float | None, ...]] = (15.0, None)
+# Decisions of each lander per second: slow, so that `modern` lands nine of ten after a minute, and as fast as possible.
+PACES: Final[tuple[float | None, ...]] = (3.5, None)
 SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
 NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
-    Confusion: "confusion",
+    Confusion: "confusion", FirstLanding: "first_landing",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
     (Progress, DigitProgress, Checkpoint, Validation, SettingChange), "history"
@@ -53,7 +52,7 @@ class TrainingRun:
 
     Attributes:
         runs: number of runs so far.
-        swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind.
+        swarm_state, network_state, in_force, lesson, confusion, first_landing: the latest message of each kind.
         swarms, networks: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
@@ -87,6 +86,7 @@ class TrainingRun:
         self.network_state: NetworkState | None = None
         self.in_force: InForce | None = None
         self.lesson: Any = None
+        self.first_landing: FirstLanding | None = None
         self.confusion: Confusion | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.steps, self.stopping = 0, False  # 0 before it has reported them, or without end

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import Field, asdict, dataclass, fields
+from dataclasses import Field, asdict, dataclass, field, fields
 from functools import cache
 from operator import attrgetter
 from typing import Any, Final, Literal
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config, InForce
-from ai.training.experiments import sabotaged
+from ai.training.experiments import named, sabotaged
 from ai.training.session import Session
 from game.core import texts
 from game.core.catalogue import capital
@@ -168,6 +168,7 @@ class RunKind:
     words: Callable[[], Mapping[str, tuple[str, str]]]  # the label of each preset, and a sentence about it
     first: tuple[str, ...]  # names of the few knobs to begin with
     page: tuple[str, ...]  # and of those on one page, on demand; all others are for `--set` of the command
+    chapters: Mapping[str, str] = field(default_factory=dict)  # of Learn, by the names of the knobs they explain
     sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
     grace: float = 3.0  # seconds that a run has to end by itself when the window closes it
     patience: float = PATIENCE  # seconds for a turn of its worker
@@ -182,10 +183,12 @@ class RunKind:
         base, sabotage = named
         return sabotaged(self.presets[base], sabotage) if sabotage else self.presets[base]
 
-    def nearest(self, config: Configuration) -> Named:
-        """Return the preset, or sabotage of one, that differs in the fewest fields; of equals, the preset."""
-        every: list[Named] = [(base, sabotage) for sabotage in ("", *self.sabotages) for base in self.presets]
-        return min(every, key=lambda named: len(config.differences(self.config_of(named))))
+    def named(self, config: Configuration) -> Named:
+        """Return the preset, or sabotage of one, that a configuration began as; of other names, the first preset."""
+        base, sabotage = named(config)
+        if base not in self.presets:
+            return next(iter(self.presets)), ""
+        return base, sabotage if sabotage in self.sabotages else ""
 
     def said(self, named: Named) -> tuple[str, str]:
         """Return the label of a preset or a sabotage, and a sentence about it."""
@@ -224,13 +227,13 @@ class RunSettings:
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
         self.in_force: InForce | None = None
-        self.named, self.draft = run_kind.nearest(config), config
+        self.named, self.draft = run_kind.named(config), config
         self.set_config(config, seed)
 
     def set_config(self, config: Configuration, seed: int) -> None:
         """Set the configuration and the seed, without calling `on_change`."""
         if config != self.draft:
-            self.named = self.run_kind.nearest(config)
+            self.named = self.run_kind.named(config)
         self._named_held = self.named
         self.config = self.draft = config
         self.seed = self.draft_seed = seed
@@ -262,6 +265,13 @@ class RunSettings:
     def waiting(self) -> list[str]:
         """Names of the knobs whose changes wait for a new run."""
         return self._different(self.draft, self.config) + [SEED] * (self.draft_seed != self.seed)
+
+    def change(self, name: str) -> dict[str, str]:
+        """Return what a setting is in effect, and what it is to be, in words."""
+        if name == SEED:
+            return {"before": figure(self.seed), "after": figure(self.draft_seed)}
+        read = self.knob_descriptions[name].read
+        return {"before": figure(read(self.config)), "after": figure(read(self.draft))}
 
     def now(self, name: str) -> float | None:
         """Return the value in effect at this moment, such as a schedule's; None if it is the knob's own."""

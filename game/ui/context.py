@@ -46,7 +46,6 @@ class Context:
         note: shows a short message near the top of the window for a few seconds.
         ahead: returns what flies a guardian's futures ahead; None where nothing does.
         apply_settings: applies the settings to the window and the sound, and saves them.
-        view: all that the window shows, in points; the same rectangle as the canvas's, which changes with the window.
         pilot: the player's own file that flies, once it was chosen by name in this game.
         reading: returns the window's canvas for text that flows, whose size and scale layouts go by.
 
@@ -63,7 +62,6 @@ class Context:
     ahead: Callable[[], FlownAhead | None] = lambda: None
     apply_settings: Callable[[], None] = lambda: None
     pilot: OwnPilot | None = None
-    view: pygame.FRect = field(default_factory=lambda: pygame.FRect((0, 0), VIEW_SIZE))
     reading: Callable[[], Canvas] = _page
 
     def toggle_full_screen(self) -> None:

@@ -10,23 +10,43 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition
-from game.drawing.canvas import Canvas, moved
-from game.drawing.tokens import MARGIN, VIEW_SIZE
+from game.drawing.canvas import Canvas
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.actions import Action, Table, answering, hints_of
 from game.ui.context import Context
 from game.ui.hints import Hint, HintRow
-from game.ui.widget import OnPress, PointsManager, Widget
+from game.ui.widget import NOWHERE, OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)
 Direction = tuple[int, int]
 UP, DOWN, LEFT, RIGHT = (0, -1), (0, 1), (-1, 0), (1, 0)
 _ARROWS: Final = {Command.UP: UP, Command.DOWN: DOWN, Command.LEFT: LEFT, Command.RIGHT: RIGHT}
-FOOT: Final = (MARGIN, VIEW_SIZE[1] - 40.0)  # where scenes on a page have their hints
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 # Steps a held direction waits before it repeats, and between repeats.
 _REPEAT_AFTER: Final = 24
 _REPEAT_EVERY: Final = 4
+
+
+class HintButton(Widget):
+    """Hint, to be pressed by the mouse or the one switch: the focus passes it over, for its key does the same."""
+
+    def __init__(self, hint: Hint) -> None:
+        super().__init__(NOWHERE, hint.meaning)
+        self.hint = hint
+
+    def place(self, hint: Hint, box: pygame.FRect) -> None:
+        """Stand for this hint, in a box in points."""
+        self.hint, self.label, self.rect = hint, hint.meaning, pygame.Rect(box)
+        self.relative_rect = self.rect
+
+    def press(self) -> Transition | None:
+        return self.hint.run() if self.hint.run else None
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.hover_point(*event.pos)
+        if pressed:
+            self.outcome = self.press()
+        return bool(pressed)
 
 
 class Form:
@@ -37,18 +57,19 @@ class Form:
     its own looks at `typing` before it takes an event, or at `used` after it has passed the event on.
 
     Attributes:
+        keys: the hints that can be pressed.
         used: whether a widget used the last event, or it moved the focus.
         in_order: whether the end of a column leads on to the next one, and not back to its beginning.
-        anchor: edges of the view beside which the form stands, as in `Canvas.at`; (0, 0) for the page in the middle.
 
     """
 
-    anchor, in_order = (0, 0), False
+    in_order = False
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
         self.widgets: list[Widget] = []
-        self._context, self._on_back = context, on_back
+        self.keys: list[HintButton] = []
+        self._context, self.back = context, on_back
         self._index = 0
         self._held_steps = 0
         self._held_direction: Command | None = None
@@ -75,7 +96,7 @@ class Form:
         return Action(Command.CONFIRM, self.confirm, hint)
 
     def goes_back(self, hint: str) -> Action:
-        return Action(Command.BACK, self._on_back, hint)
+        return Action(Command.BACK, self.back, hint)
 
     @property
     def hints(self) -> list[Hint]:
@@ -114,12 +135,37 @@ class Form:
     def focus(self, widget: Widget) -> None:
         self._index = self.widgets.index(widget)
 
+    def lay_keys(self, rows: Sequence[HintRow], canvas: Canvas) -> None:
+        """Have the hints of these rows pressed where they stand; those of a card come before the flight's behind it."""
+        found = [pair for row in reversed(rows) for pair in zip(row.hints, row.boxes(canvas), strict=True)]
+        found = [(hint, box) for hint, box in found if hint.run]
+        for key in self.keys[len(found) :]:
+            key.kill()  # type: ignore[no-untyped-call]
+        self.keys = self.keys[: len(found)] + [HintButton(hint) for hint, _ in found[len(self.keys) :]]
+        for key, (hint, box) in zip(self.keys, found, strict=True):
+            key.place(hint, box)
+            key.join(self.manager)
+
+    def find(self, key: str) -> Widget | None:
+        """Return the widget of a key, if there is one."""
+        return next((widget for widget in self.widgets if widget.key == key), None)
+
+    def follow(self, before: Form, otherwise: Widget | None = None) -> None:
+        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place.
+
+        `otherwise` has the focus where its key is gone.
+        """
+        self.manager.mouse_position = before.manager.mouse_position
+        for widget in self.widgets:
+            if same := before.find(widget.key):
+                widget.warmth = same.warmth
+        if before.focused and self.widgets:
+            place = min(before.widgets.index(before.focused), len(self.widgets) - 1)
+            self.focus(self.find(before.focused.key) or otherwise or self.widgets[place])
+
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
         """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
         self.used = True
-        if event.type in _MOUSE and self.anchor != (0, 0):
-            (x, y), (right, down) = event.pos, moved(self._context.view, *self.anchor)
-            event = pygame.event.Event(event.type, {**event.dict, "pos": (x - right, y - down)})
         return self._sounding(lambda: self._take(event, actions))
 
     def confirm(self, *, pointed: bool = True) -> Transition | None:
@@ -166,7 +212,7 @@ class Form:
         elif command is Command.CONFIRM and widget:
             return self._press()
         elif command in (Command.BACK, Command.PAUSE):
-            return self._on_back()
+            return self.back()
         else:
             self.used = False
         return None
@@ -182,7 +228,6 @@ class Form:
         return None
 
     def draw(self, canvas: Canvas) -> None:
-        canvas = canvas.at(*self.anchor)
         for widget in self.widgets:
             widget.paint(canvas)
 
@@ -201,7 +246,8 @@ class Form:
             widget.held and widget.hover_point(*event.pos) for widget in self.widgets
         )
         self.used = self.manager.process_events(event)
-        return next((outcome for widget in self.widgets if (outcome := _outcome(widget)) is not None), None)
+        pressed = (*self.keys, *self.widgets)
+        return next((outcome for widget in pressed if (outcome := _outcome(widget)) is not None), None)
 
     def _move(self, command: Command) -> None:
         if not self.widgets:
@@ -271,12 +317,16 @@ class FormScene(Scene):
     def hints(self) -> list[Hint]:
         return self.form.hints or hints_of(self.actions(), self.context.controls)
 
-    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002
-        return [HintRow(self.hints, FOOT)]
-
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self.lay_keys()
         moves = tab(event) != 0 and not self.takes_tab
         return self.form.handle_event(event, () if moves else self.actions())
+
+    def lay_keys(self) -> None:
+        """Have the hints pressed where they stand now."""
+        canvas = self.context.reading()
+        self.form.lay_keys(self.hint_rows(canvas), canvas)
 
     def update(self) -> Transition | None:
         return self.form.update()
@@ -284,31 +334,6 @@ class FormScene(Scene):
     def draw_hints(self, canvas: Canvas) -> None:
         for row in self.hint_rows(canvas):
             row.draw(canvas)
-
-
-class Part:
-    """Part of a form whose widgets a panel of its own lays out; the form has them once they are added to it."""
-
-    def __init__(self, form: Form) -> None:
-        self._form, self.widgets = form, list[Widget]()
-        self.controls, self.in_order = form.controls, True
-
-    @property
-    def focused(self) -> Widget | None:
-        focused = self._form.focused
-        return focused if focused in self.widgets else None
-
-    def add(self, widget: W) -> W:
-        widget.join(self._form.manager)
-        self.widgets.append(widget)
-        return widget
-
-    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Replace some adjacent widgets by others, of the form as well."""
-        self._form.replace(old, new)
-        place = self.widgets.index(old[0]) if old else len(self.widgets)
-        self.widgets = [each for each in self.widgets if each not in old]
-        self.widgets[place:place] = new
 
 
 def _reading(widget: Widget | None) -> object:

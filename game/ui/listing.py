@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import pygame
 
+from game.drawing.canvas import least
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.ui.widget import NOWHERE, RowWidget, mix
@@ -185,7 +186,7 @@ class ListRow(RowWidget):
 
 def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
     """Return a text, cut with an ellipsis if necessary, that `Canvas.text` can write within the room in points."""
-    room *= size / canvas.least(size)
+    room *= size / least(size)
     if canvas.text_width(text, size=size) <= room:
         return text
     lengths = range(len(text))

@@ -7,7 +7,7 @@ the room that there is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Concatenate, Final, ParamSpec, TypeVar
@@ -24,14 +24,16 @@ from game.ui.widget import RowWidget, Widget
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
-    from game.ui.form import Form, Part
+    from game.ui.form import Form
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
+F = TypeVar("F", bound=ButtonRow | ChoiceRow)
 P = ParamSpec("P")
 Write = Callable[[Cursor], object]
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
 _WORDS: Final = 28.0  # points between two words side by side
+_LOW: Final = 5.0  # points above and below words side by side
 _WHEEL: Final = 48.0  # points for one notch of the mouse's wheel
 
 
@@ -57,9 +59,10 @@ def _adding(kind: Callable[P, W]) -> Callable[Concatenate[Column, P], W]:
 class Column:
     """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
 
-    def __init__(self, form: Form | Part) -> None:
+    def __init__(self, form: Form, within: Column | None = None) -> None:
         self.rows: list[Row] = []
-        self._form, self._widgets = form, list[Widget]()
+        self._form, self._within = form, within
+        self.widgets: list[Widget] = []
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
@@ -72,9 +75,20 @@ class Column:
 
     def clear(self) -> None:
         """Take all rows away with their widgets, which are the last of the form, to describe others."""
-        self._form.replace(self._widgets, ())
-        self._widgets.clear()
+        self._form.replace(self.widgets, ())
+        for widget in self.widgets:
+            for column in self._around:
+                column.widgets.remove(widget)
+        self.widgets.clear()
         self.rows.clear()
+
+    @property
+    def _around(self) -> Iterator[Column]:
+        """The columns of which this one is a part, the nearest first."""
+        column = self._within
+        while column:
+            yield column
+            column = column._within
 
     # Words and figures
 
@@ -128,24 +142,33 @@ class Column:
     def widget(self, widget: W) -> W:
         """Add a widget, as the next one of the form."""
         self.add(widget.lay)
-        self._widgets.append(widget)
+        return self._take(widget)
+
+    def _take(self, widget: W) -> W:
+        for column in (self, *self._around):
+            column.widgets.append(widget)
         return self._form.add(widget)
 
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
     slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
-    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
+    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT, colour: Colour = MUTE) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        buttons = [self._form.add(ButtonRow(label, press, size=size)) for label, press in words]
-        self._widgets += buttons
-        self.add(partial(_write_words, buttons))
-        return buttons
+        return self.flow([ButtonRow(label, press, size=size, colour=colour) for label, press in words])
+
+    def flow(self, widgets: Sequence[F]) -> list[F]:
+        """Add widgets side by side, each as wide as its words, on as many lines as they need."""
+        added = [self._take(widget) for widget in widgets]
+        for widget in added:
+            widget.pad = _LOW
+        self.add(partial(_write_words, added))
+        return added
 
     # Columns
 
     def beside(self, shares: Sequence[float], least: float, apart: float = 64.0) -> list[Column]:
         """Add columns side by side, each as wide as its share; below each other where one would lack `least`."""
-        columns = [Column(self._form) for _ in shares]
+        columns = [Column(self._form, self) for _ in shares]
         self.add(lambda cursor: cursor.beside([column.write for column in columns], shares, least, apart))
         return columns
 
@@ -173,7 +196,7 @@ class Panel(Column):
 
     """
 
-    def __init__(self, form: Form | Part) -> None:
+    def __init__(self, form: Form) -> None:
         super().__init__(form)
         form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)
@@ -188,7 +211,7 @@ class Panel(Column):
     def lay_out(self, box: pygame.FRect, scale: float) -> None:
         same, self.box = box == self.box, box
         self._measure(scale)
-        focused = self._form.focused
+        focused = self._form.focused if self._form.focused in self.widgets else None
         if focused is not self._shown or not same:
             self._shown = focused
             if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
@@ -206,9 +229,9 @@ class Panel(Column):
         return Cursor(box.left, box.top - self.scrolled, box.width, scale, canvas, pygame.FRect(box))
 
     def _reveal(self, widget: pygame.FRect, which: Widget) -> None:
-        if which is self._form.widgets[0]:
+        if which is self.widgets[0]:
             self.scrolled = 0.0  # with what stands above it
-        elif which is self._form.widgets[-1]:
+        elif which is self.widgets[-1]:
             self.scrolled = min(self.height, self.scrolled + widget.top - self.box.top - _ABOVE)  # with what is below
         elif widget.top < self.box.top + _ABOVE:
             self.scrolled += widget.top - self.box.top - _ABOVE
@@ -239,13 +262,15 @@ class Panel(Column):
         canvas.pill((right, top, 3, self.box.height * share), MUTE)
 
 
-def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
+def _write_words(widgets: Sequence[ButtonRow | ChoiceRow], cursor: Cursor) -> None:
     left, below = cursor.left, cursor.y
-    for button in buttons:
-        width = min(button.measured(cursor), cursor.width)
+    for widget in widgets:
+        width = min(widget.measured(cursor), cursor.width)
         if left > cursor.left and left + width > cursor.right:
             left, cursor.y = cursor.left, below
         place = cursor.column(left, width)
-        button.lay(place)
+        widget.lay(place)
+        if cursor.canvas and widget.what:
+            cursor.canvas.explain(widget.box, widget.what)
         left, below = left + width + _WORDS, max(below, place.y)
     cursor.y = below

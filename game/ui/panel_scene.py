@@ -40,7 +40,6 @@ class PanelScene(FormScene, ABC):
 
     """
 
-    flows = True
     most = _WIDEST
 
     def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
@@ -59,9 +58,7 @@ class PanelScene(FormScene, ABC):
         self.form = Form(self.context, self._on_back)
         self.panel = Panel(self.form)
         self.describe(self.panel)
-        if before.focused and self.form.widgets:
-            place = before.widgets.index(before.focused)
-            self.form.focus(self.form.widgets[min(place, len(self.form.widgets) - 1)])
+        self.form.follow(before)
         self.lay_out()
         self.panel.scroll(scrolled)
         self.lay_out()

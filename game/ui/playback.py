@@ -12,7 +12,6 @@ from game.core.clock import TimeScale
 from game.drawing.tokens import SMALL
 from game.input.controls import Command
 from game.ui.actions import Action
-from game.ui.panel import Column
 from game.ui.rows import ChoiceRow
 
 _WORDS: Final = {0.25: "×¼", 0.5: "×½", 1.0: "×1", 2.0: "×2", 4.0: "×4"}
@@ -36,13 +35,10 @@ class Playback:
         self.stopped = False
         self._row: ChoiceRow | None = None
 
-    @property
-    def word(self) -> str:
-        return _WORDS[self._clock.rate]
-
-    def describe(self, column: Column, size: float = SMALL) -> ChoiceRow:
+    def choice(self) -> ChoiceRow:
+        """Return a row to choose the speed from."""
         words, now = [_WORDS[speed] for speed in self._speeds], self._speeds.index(self._clock.rate)
-        self._row = column.choice(texts.WATCH_SPEED, words, now, self._choose, size)
+        self._row = ChoiceRow(texts.WATCH_SPEED, words, now, self._choose, SMALL)
         return self._row
 
     def actions(

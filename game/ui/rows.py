@@ -26,6 +26,7 @@ _ALL: Final = -1  # the word that opens a list, among the numbers of the options
 _FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
+_SHARE: Final = 0.4  # of a line, that a choice among others takes at most
 _SWATCH: Final = 27.0  # points for a piece of a line before a name
 
 
@@ -40,7 +41,12 @@ def percent(share: float) -> str:
 
 
 class ButtonRow(RowWidget):
-    """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus."""
+    """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus.
+
+    Attributes:
+        size: of the words, in points.
+
+    """
 
     acts = True
 
@@ -56,7 +62,7 @@ class ButtonRow(RowWidget):
         colour: Colour = MUTE,
     ) -> None:
         super().__init__(NOWHERE, label)
-        self._on_press, self._size, self._weight, self._colour = press, size, weight, colour
+        self._on_press, self.size, self._weight, self._colour = press, size, weight, colour
         self._aside, self._figure = aside, figure
 
     def press(self) -> Transition | None:
@@ -64,19 +70,19 @@ class ButtonRow(RowWidget):
 
     def measured(self, cursor: Cursor) -> float:
         """Return the width of its words on one line, with something to spare."""
-        return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
+        return cursor.in_style(self.size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
-        label = cursor.in_style(self._size, mix(self._colour, INK, self.warmth), self._weight)
+        label = cursor.in_style(self.size, mix(self._colour, INK, self.warmth), self._weight)
         top, wide, figure = cursor.y, min(label.measured(self.label), cursor.width), said(self._figure)
         label.text(self.label)
         if cursor.canvas and self.warmth * wide > 1:
-            y = label.y - 0.05 * self._size + 2
+            y = label.y - 0.05 * self.size + 2
             cursor.canvas.line((cursor.left, y), (cursor.left + wide * self.warmth, y), NET, 2, self.warmth)
         if figure:
             beside = cursor.in_style(TEXT, HUMAN)
             if wide + _WORDS + beside.measured(figure) <= cursor.width:
-                beside.left, beside.y = cursor.left + wide + _WORDS, top + BASELINE * (self._size - TEXT)
+                beside.left, beside.y = cursor.left + wide + _WORDS, top + BASELINE * (self.size - TEXT)
                 beside.text(figure)
             else:
                 beside.y = label.y
@@ -112,7 +118,7 @@ class RunRow(ButtonRow):
 
     def write(self, cursor: Cursor) -> None:
         if cursor.canvas:
-            middle = cursor.y + LEADING * self._size / 2
+            middle = cursor.y + LEADING * self.size / 2
             draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
         name = replace(cursor, left=cursor.left + _SWATCH, width=cursor.width - _SWATCH)
         super().write(name)
@@ -131,12 +137,8 @@ class ToggleRow(RowWidget):
         self.value = not self.value
         self._on_change(self.value)
 
-    def shift(self, direction: int) -> bool:
-        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
-        if self.value == (direction > 0):
-            return False
+    def advance(self) -> None:
         self.press()
-        return True
 
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)
@@ -265,7 +267,7 @@ class ChoiceRow(RowWidget):
 
     """
 
-    _labels, _compact = _LABELS, False
+    _labels = _LABELS
 
     def __init__(
         self,
@@ -283,9 +285,17 @@ class ChoiceRow(RowWidget):
         self._on_open, self._all_word = on_open, all_word
         self._places: dict[int, pygame.FRect] = {}
 
-    def compact(self, labels: float, pad: float) -> None:
-        """Take no more room than the words do, with so many points for the label: for choices over a picture."""
-        self._labels, self.pad, self._compact = labels, pad, True
+    def measured(self, cursor: Cursor) -> float:
+        """Return the width that its words need side by side with others; the label has no column of its own then."""
+        self._labels, words = 0.0, cursor.in_style(self._size)
+        wide = self._width(words, self.options)
+        if self._on_open and wide > _SHARE * cursor.width:
+            wide = self._width(words, (self.options[self.index], self._all_word))
+        return words.measured(self.label) + _WORDS * bool(self.label) + wide + 1
+
+    @staticmethod
+    def _width(words: Cursor, options: Sequence[str]) -> float:
+        return sum(map(words.measured, options)) + _WORDS * (len(options) - 1)
 
     def choose(self, index: int) -> None:
         """Choose an option by its number."""
@@ -305,11 +315,6 @@ class ChoiceRow(RowWidget):
             self.choose(under)
         return None
 
-    def lay(self, cursor: Cursor) -> None:
-        super().lay(cursor)
-        if self._compact and cursor.canvas is None:
-            self.rect.width = round(self.reach + _WORDS / 2)
-
     def shift(self, direction: int) -> bool:
         before = self.index
         self.choose(self.index + direction)
@@ -318,7 +323,7 @@ class ChoiceRow(RowWidget):
     def write(self, cursor: Cursor) -> None:
         words = cursor.in_style(self._size, mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         options = dict(enumerate(self.options))
-        left, wide = cursor.left, sum(map(words.measured, self.options)) + _WORDS * (len(self.options) - 1)
+        left, wide = cursor.left, self._width(words, self.options)
         if self.label:
             beside = cursor.left + max(self._labels, words.measured(self.label) + _WORDS)
             if beside + wide <= cursor.right or self._on_open:
@@ -344,5 +349,5 @@ class ChoiceRow(RowWidget):
         if cursor.canvas is None:
             self._places = places
             ends = max(place.right for place in places.values()) - _WORDS / 2
-            self.reach = 0.0 if self.label and not self._compact else ends - cursor.left
+            self.reach = 0.0 if self.label and self._labels else ends - cursor.left
         cursor.y = words.y + LEADING * self._size

@@ -107,7 +107,7 @@ class VirtualPointer(Widget):
 
     def hints(self, controls: Controls) -> list[Hint]:
         hold = [Hint(controls.word(Command.CONFIRM), self._hold)] if self._hold else []
-        leave = Hint(controls.word(Command.BACK), self._leave, self._lay_aside)
+        leave = Hint(controls.word(Command.BACK), self._leave, self.lay_aside)
         return [Hint(controls.arrows, texts.HINT_MOVE), *hold, leave]
 
     def take(self, event: pygame.event.Event) -> bool:
@@ -122,7 +122,7 @@ class VirtualPointer(Widget):
         if self._held.tilt(event):
             return True
         if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
-            self._lay_aside()
+            self.lay_aside()
             return False
         return self._obey(event, code)
 
@@ -136,7 +136,7 @@ class VirtualPointer(Widget):
         elif self._held.press(code, command):
             pass
         elif command in (Command.BACK, Command.PAUSE, Command.UNPLUGGED):
-            self._lay_aside()
+            self.lay_aside()
         else:
             return False
         return True
@@ -144,7 +144,7 @@ class VirtualPointer(Widget):
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)
         if self.typing and not self.focused:
-            self._lay_aside()
+            self.lay_aside()
         if not self.typing:
             return
         way, arrows = self._held.stick, self._held.arrows
@@ -158,7 +158,10 @@ class VirtualPointer(Widget):
         self.place.y = min(max(self.place.y, box.top), box.bottom)
         self._tell(pygame.MOUSEMOTION)
 
-    def _lay_aside(self) -> None:
+    def lay_aside(self) -> None:
+        """End pointing, and let go."""
+        if not self.typing:
+            return
         self.typing = False
         self._held.clear()
         self._lift()

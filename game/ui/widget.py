@@ -65,6 +65,7 @@ class Widget(UIElement):
     """Base widget with a box, a label, a press and the focus.
 
     Attributes:
+        key: by which a form finds it, however its rows are described; its label, unless something else is set.
         focused: whether the form's focus is here.
         typing: whether this widget takes every key and button, so that none gives a command.
         by_arrows: whether only left and right change it, and a press does nothing.
@@ -83,7 +84,7 @@ class Widget(UIElement):
     def __init__(self, box: pygame.typing.RectLike, label: str) -> None:
         GUISprite.__init__(self)  # which has a place already before it joins a form
         self.rect = self.relative_rect = pygame.Rect(box)
-        self.label, self.help = label, ""
+        self.label, self.help, self._key = label, "", ""
         self.focused = self.typing = self.ringed = self.held = False
         self.warmth = 0.0
         self.outcome: Transition | None = None
@@ -94,6 +95,14 @@ class Widget(UIElement):
         if not self._joined:
             self._joined = True
             super().__init__(self.rect, manager, None, starting_height=1, layer_thickness=1)
+
+    @property
+    def key(self) -> str:
+        return self._key or self.label
+
+    @key.setter
+    def key(self, key: str) -> None:
+        self._key = key
 
     @property
     def box(self) -> pygame.Rect:
@@ -157,11 +166,12 @@ class RowWidget(Widget):
     Attributes:
         pad: points above and below what it says.
         reach: how far from the left its ring reaches, in points; 0 for the whole column.
+        what: what it is, for whoever asks, where several stand on a line.
         seen: the part of its panel that is not scrolled away.
 
     """
 
-    pad, reach = 8.0, 0.0
+    pad, reach, what = 8.0, 0.0, ""
     seen: pygame.FRect | None = None
 
     def lay(self, cursor: Cursor) -> None:

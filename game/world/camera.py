@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -33,6 +33,7 @@ CLOSEST: Final = 2.0
 # Lines of a page for which the world is painted at most. A larger window shows the same pictures, scaled: at arm's
 # length that is not seen, and 2,160 lines would take twice as long to paint, and to scale at every zoom.
 MOST_LINES: Final = 1440
+_LEAST: Final = 0.4 * VIEW_SIZE[0]  # points of the width that a flight has at least
 LAND_REACH: Final = 34.0  # metres of visible land to either side of the middle of the world
 
 _PACE: Final = 2.6  # rad/s, of the spring that moves the camera
@@ -71,10 +72,6 @@ class View:
         """Return this view as it fills that canvas."""
         lower = canvas.view.bottom - VIEW_SIZE[1]
         return View(canvas.scale, self.centre, self.zoom, self.closest, canvas.origin, lower)
-
-    def lowered(self, seen: pygame.FRect) -> View:
-        """Return this view with its ground at the lower edge of all that is seen, in points."""
-        return replace(self, lower=seen.bottom - VIEW_SIZE[1])
 
     @property
     def pixels_per_metre(self) -> float:
@@ -120,11 +117,28 @@ def _columns(position: npt.ArrayLike) -> Any:
 
 @dataclass(frozen=True)
 class ClearArea:
-    """The part of the screen, in points, that is kept clear for the flight; text has the rest."""
+    """The part of the world's page, in points, that is kept clear for the flight; text has the rest.
+
+    `head` is measured from the upper edge of the window; `foot` is by how much less than a page is left of the height.
+    """
 
     left: float = 0.0
     right: float = float(VIEW_SIZE[0])
     head: float = 104.0
+    foot: float = 0.0
+
+    @classmethod
+    def of(cls, canvas: Canvas, free: pygame.FRect) -> ClearArea:
+        """Return what rows leave free of the world, whose box is in points of what is read."""
+        world, below = canvas.whole, canvas.view.bottom - free.bottom
+        (left, top), (right, _) = (world.points(canvas.pixels(place)) for place in (free.topleft, free.topright))
+        left, right = max(left, 0.0), min(right, float(VIEW_SIZE[0]))
+        foot = VIEW_SIZE[1] - world.above(below).view.height
+        return cls(min(left, right - _LEAST), right, max(top - world.view.top, cls.head), foot)
+
+    def earth(self, place: tuple[float, float], radius: float) -> tuple[float, float]:
+        """Return where the Earth stands, in points: in its place, but below the words at the head."""
+        return place[0], max(place[1], self.head + self.foot + 1.3 * radius)
 
 
 @dataclass(frozen=True)
@@ -138,7 +152,7 @@ class CameraTarget:
     def around(cls, left: float, right: float, top: float, clear: ClearArea) -> CameraTarget:
         """Return the closest shot whose clear part shows `left` to `right`, and up to `top`, in metres."""
         wide = (clear.right - clear.left) / (POINTS_PER_METRE * max(right - left, 1.0))
-        high = (GROUND_ROW - clear.head) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
+        high = (GROUND_ROW - clear.head - clear.foot) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
         zoom = max(min(wide, high, CLOSEST), WIDEST)
         aside = ((clear.left + clear.right) - VIEW_SIZE[0]) / (2 * POINTS_PER_METRE * zoom)
         return cls((left + right) / 2 - aside, zoom).on_land()

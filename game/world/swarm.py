@@ -24,7 +24,7 @@ from game.world.paths import Trails
 
 _SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # (landers at most, drawn size)
 _KEEP: Final = 16  # flights whose trail stays visible
-_LONGEST_GAP: Final = 12.0  # frames between two snapshots, up to which landers are interpolated
+_LONGEST_GAP: Final = 20.0  # frames between two snapshots, up to which landers are interpolated
 _JUMP: Final = 4.0  # metres: farther than any lander flies between two snapshots
 _LABEL: Final = (3.2, 1.6)  # metres that a lander's label takes; of landers closer than that, only the best is labelled
 _REACH: Final = 16.0  # points from a lander within which a click is meant for it

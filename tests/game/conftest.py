@@ -47,7 +47,6 @@ def usual_text() -> Iterator[None]:
     """Leave text as large as it was found, and nothing that was written in another language: both are the process's."""
     read = texts.MENU
     yield
-    typeface.grow(1.0)
     if texts.MENU is not read:
         typeface.forget()
 

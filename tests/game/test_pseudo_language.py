@@ -65,7 +65,7 @@ def test_words_that_are_not_translated_are_found():
 def test_the_language_is_a_third_longer_and_keeps_what_is_filled_in():
     made = pseudo.accented(texts.SCREENSHOT_SAVED)
     assert made.format(path="here").endswith(": here")
-    longer = [len(pseudo.accented(text)) / len(text) for text in (texts.LOGBOOK_EMPTY, texts.NAME_EMPTY, texts.BEGIN)]
+    longer = [len(pseudo.accented(text)) / len(text) for text in (texts.LOGBOOK_EMPTY, texts.NAMING, texts.BEGIN)]
     assert all(1.2 < each < 1.4 for each in longer)
 
 

@@ -112,7 +112,7 @@ class Driver:
         self.post(pygame.CONTROLLERAXISMOTION, instance_id=pad, axis=axis, value=value)
 
     def to_window(self, points: tuple[float, float]) -> tuple[int, int]:
-        canvas = self.top.laid_on(self.app.canvas)
+        canvas = self.app.canvas.reading
         x, y = (round(p * canvas.scale + o) for p, o in zip(points, canvas.origin, strict=True))
         return x, y
 
@@ -151,7 +151,7 @@ class Driver:
 
     def hints(self) -> dict[str, tuple[float, float]]:
         """What the hints on the screen say, and where each can be clicked."""
-        canvas = self.top.laid_on(self.app.canvas)
+        canvas = self.app.canvas.reading
         return {
             hint.meaning: box.center
             for row in self.top.hint_rows(canvas)

@@ -1,14 +1,19 @@
 """Flights as tests fly them: to the end, by the scripted pilot."""
 
+from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 from ai.flights.recording import Recording
 from ai.lander.pilots import ScriptedPilot
+from game.core.settings import Settings
 from game.flight.choosers import Crew
+from game.flight.credit import Credit
 from game.flight.flight import Flight, begin
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
+from game.flight.outcomes import OutcomeCard, outcome_card
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -19,6 +24,17 @@ NOON = 1_700_000_000.0
 def begun(seed: int, network: Any = None, spawn: str = "random", *, shares: bool = True, **start: Any) -> Flight[Crew]:
     """A flight that a person flies, from the start of that seed."""
     return begin(Recording(seed, spawn, **start), network, shares=shares)
+
+
+def concluded(challenge: Any, flight: Flight[Crew], card: OutcomeCard | None = None, **card_with: Any) -> OutcomeCard:
+    """The card of a flight that has ended and is flown as that challenge, with what it adds."""
+    card = card or replace(outcome_card(flight.env, flight.share), **card_with)
+    rest = {"keep": lambda *_: None, "context": SimpleNamespace(apply_settings=lambda: None)}
+    flown = SimpleNamespace(flight=flight, credit=Credit(flight, Settings(), challenge.rules), **rest)
+    challenge.ended(flown)
+    if add := challenge.words(flown).card:
+        add(card)
+    return card
 
 
 def actions(flight: Any) -> list[int]:

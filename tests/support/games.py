@@ -32,6 +32,7 @@ def games(context: Context) -> Iterator[OpenGame]:
         *arguments: Any,
         tutored: bool = True,
         ladder: bool = False,
+        first_run: bool = False,
         **options: Any,
     ) -> Driver:
         """Open the game with a scene that is given, or made by its class or a function, with these arguments."""
@@ -43,6 +44,8 @@ def games(context: Context) -> Iterator[OpenGame]:
             driver.app.settings_writer.wait()
         context.settings = SettingsFile(context.user_dir).load()
         context.settings.tutored |= tutored  # or a first flight would teach
+        if not first_run:  # or it would go slowly, and offer a lesson
+            context.settings.slow_runs, context.settings.lesson_offered = False, True
         if not ladder and context.settings.rung < 0:
             context.settings.rung = TOP_RUNG  # or free flights would begin above the pad
         frames = count()

@@ -307,7 +307,7 @@ class Monkey:
         """Draw a place in the window: the middle of a widget, anywhere, or beyond its edge."""
         form = getattr(self.app.scenes.top, "form", None)
         if isinstance(form, Form) and form.widgets and self.rng.random() < 0.6:
-            canvas = self.app.scenes.top.laid_on(self.app.canvas)
+            canvas = self.app.canvas.reading
             rect = canvas.rect(*self._one(form.widgets).box)
             x, y = rect.topleft + self.rng.random(2) * rect.size
             return round(x), round(y)

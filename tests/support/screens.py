@@ -13,7 +13,7 @@ from ai.digits.preprocessing import Image, preprocess_strokes
 from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
-from game.flight import sharing
+from game.flight import codes
 from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.scenes.digits.inside import DigitInsideScene
@@ -34,14 +34,13 @@ from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
-from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.digits import digit_training
 from game.scenes.train.networks import NetworksScene
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.pilots import PilotsScene
@@ -50,14 +49,15 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play
 from tests.support.lessons import lesson_of
+from tests.support.tastes import raised
 
 Make = Callable[[Context], Scene]
 
 
 def friend(context: Context) -> ReplayScene:
     """The page of a friend's flight."""
-    flight = sharing.shared(flown(context))
-    return ReplayScene(context, sharing.record_of(flight, time.time()), flight)
+    flight = codes.claimed(flown(context))
+    return ReplayScene(context, codes.record_of(flight, time.time()), flight)
 
 
 SCREENS: dict[str, Make] = {
@@ -66,8 +66,9 @@ SCREENS: dict[str, Make] = {
     "MissionsScene": MissionsScene,
     "WatchScene": lambda context: WatchScene(context, seed=1),
     "TrainScene": TrainScene,
+    "TasteScene": raised,
     "DigitsScene": DigitsScene,
-    "DigitTrainingScene": DigitTrainingScene,
+    "DigitTrainingScene": digit_training,
     "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
     "PhysicsScene": PhysicsScene,
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
@@ -105,9 +106,8 @@ FLOWN: dict[str, Make] = {
     **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
+    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below.context, below, begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
 }

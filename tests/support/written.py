@@ -111,9 +111,7 @@ class Written:
 
 
 def seen(canvas: Canvas, box: pygame.FRect) -> pygame.FRect:
-    """Return as much of a box as is not scrolled away; what flows is drawn within the room of its panel."""
-    if canvas.grows:
-        return box
+    """Return as much of a box as is not scrolled away."""
     clip = canvas.surface.get_clip()
     left, top = canvas.points(clip.topleft)
     return box.clip(pygame.FRect(left, top, clip.width / canvas.scale, clip.height / canvas.scale))
@@ -121,8 +119,8 @@ def seen(canvas: Canvas, box: pygame.FRect) -> pygame.FRect:
 
 def on_whole(canvas: Canvas, box: pygame.FRect) -> pygame.FRect:
     """Return a box in the points of the whole window's canvas; where text flows, a point has another size."""
-    if canvas.grows:
-        return box.move(canvas.moved)
+    if canvas.whole is canvas:
+        return box
     (left, top), share = canvas.whole.points(canvas.pixels(box.topleft)), canvas.scale / canvas.whole.scale
     return pygame.FRect(left, top, box.width * share, box.height * share)
 

@@ -15,7 +15,7 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.input.controls import Command, translate
 from game.scenes.digits.reader import LEAST_INK, Reading, Verdict, best_two
-from game.training.digit_models import called
+from game.training.library import called
 from game.ui.widget import RowWidget, mix
 
 _DIGITS: Final = 10

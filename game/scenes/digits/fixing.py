@@ -15,13 +15,14 @@ from ai.files import CONFIG
 from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.worker import Worker, WorkerState
-from game.training.digit_models import PATIENCE, models_by_name
+from game.training.library import models_by_name
+from game.training.run_kind import DIGITS
 
 _UNDONE: Final = ".undone"  # suffix of an undone fix's folder until it is removed
 
 
 class FixRunner:
-    """Runs one fix at a time; call `poll` once a frame. Networks have their names in `game.training.digit_models`.
+    """Runs one fix at a time; call `poll` once a frame. Networks have their names in `game.training.library`.
 
     Every fix has a folder of its own, which only `undo` removes.
 
@@ -73,7 +74,7 @@ class FixRunner:
         network, folder = self.networks[name], source or self.folder(name)
         number = int(network.fixed()[-1].name) + 1 if network.fixed() else 1
         self._worker = Worker(fix, folder, image, digit, network.fixes / f"{number:04}", before=_accuracy(folder))
-        self._worker.patience = PATIENCE
+        self._worker.patience = DIGITS.patience
         return True
 
     def poll(self) -> Fixed | None:

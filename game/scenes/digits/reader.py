@@ -18,7 +18,7 @@ from ai.files import brief
 from game.digits.kept import classifier_in
 from game.digits.pictures import Numbers, visible
 from game.scenes.digits.pad import DrawingPad
-from game.training.digit_models import NAMES
+from game.training.library import NAMES
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier

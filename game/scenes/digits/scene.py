@@ -22,7 +22,7 @@ from game.scenes.digits.answer import DigitBars, write_answer, write_legend
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.pad import DrawingPad, pen_row
 from game.scenes.digits.reader import LiveReading, Reading, Verdict, best_two
-from game.training.digit_models import NAMES, called
+from game.training.library import NAMES, called
 from game.ui.actions import Action, Table, digit_actions
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
@@ -126,7 +126,7 @@ class DigitsScene(PanelScene):
             (texts.DIGITS_CLEAR, self.pad.clear),
             (texts.INSIDE_TITLE, self._look_inside),
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
-            (texts.DIGITS_MORE[self._more], self._open_more),
+            (texts.MORE[self._more], self._open_more),
         ])  # fmt: skip
         answer, why = right.beside((22, 33), least=_ANSWER)
         answer.add(self._write_answer)
@@ -156,7 +156,7 @@ class DigitsScene(PanelScene):
         return self.context.settings.is_open(_MORE)
 
     def _open_more(self) -> None:
-        self.context.settings.open(_MORE)
+        self.context.settings.unfold(_MORE)
         self.context.apply_settings()
         self.build()
 

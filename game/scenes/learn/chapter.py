@@ -1,4 +1,4 @@
-"""Chapter: one question of the path, with something real and small to touch; `scene` shows it, in three pages."""
+"""Chapter: one question of the path, with something real and small to touch; `scene` shows it on a page that grows."""
 
 from __future__ import annotations
 
@@ -42,6 +42,7 @@ class Chapter(ABC):
         shape: height of the picture, as a share of its width.
         explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
+        news: set when that has changed; the scene takes it.
         problem: why there is nothing to show or to try; empty if there is.
         changed: set when there are other controls than before; the scene describes them anew.
 
@@ -55,24 +56,23 @@ class Chapter(ABC):
 
     def __init__(self, context: Context) -> None:
         self.context = context
-        self.tried = self.changed = False
+        self.tried = self.news = self.changed = False
 
     @property
     def words(self) -> dict[str, str]:
         """The chapter's texts by name."""
         return texts.LEARN[self.key]
 
-    @property
-    def running(self) -> bool:
-        """Whether a try goes on, and `why` must wait for its end."""
-        return False
-
     @abstractmethod
     def controls(self, column: Column) -> None:
-        """Add what can be changed and pressed on the second page."""
+        """Add what can be changed and pressed."""
 
     def below(self, column: Column) -> None:  # noqa: B027 - a picture may say it all
         """Add what stands below the picture."""
+
+    def found(self) -> None:
+        """Take note that a try has shown something."""
+        self.tried = self.news = True
 
     @abstractmethod
     def restart(self) -> None:
@@ -95,7 +95,7 @@ class Chapter(ABC):
         """Draw the picture in a box, in points, `alpha` of the way from the step before to this one."""
 
     def update(self) -> None:  # noqa: B027 - nothing moves in some chapters
-        """Advance by 1/60 s; called on every page but the first, on which the picture stands still."""
+        """Advance by 1/60 s; called once the question was answered, until when the picture stands still."""
 
     def close(self) -> None:  # noqa: B027 - most hold nothing
         """Release resources such as a process."""

@@ -41,17 +41,16 @@ class LearnScene(PanelScene):
         super().__init__(context)
         self._progress = Progress(context.settings)
         self._list: ListRow | None = None
-        self._choose_last()
+        self._choose_first()
         self.build()
         self.form.focus(self.form.widgets[1])  # the list
 
-    def _choose_last(self) -> None:
-        """Choose the chapter that was left, or the first that is not done where that one is."""
-        last, undone = self.context.settings.chapter, [key for key in PATH if not self._progress.done(key)]
-        self.chosen = last if last in undone else next(iter(undone), FIRST)
+    def _choose_first(self) -> None:
+        """Choose the first chapter that is not done."""
+        self.chosen = next((key for key in PATH if not self._progress.done(key)), FIRST)
 
     def enter(self) -> None:
-        self._choose_last()
+        self._choose_first()
         self.build()
 
     def actions(self) -> Table:
@@ -78,10 +77,10 @@ class LearnScene(PanelScene):
         self._verb = right.button(
             texts.LEARN_VERBS[self._progress.state(self.chosen)], self._open, size=TITLE, colour=INK
         )
-        right.gap(24)
+        right.gap()
         self._describe_own(right)
-        right.gap(12)
-        right.button(texts.LEARN_PHYSICS, partial(push, "physics"), texts.LEARN_PHYSICS_ASIDE)
+        left.gap()
+        left.button(texts.LEARN_PHYSICS, partial(push, "physics"), texts.LEARN_PHYSICS_ASIDE)
 
     def _describe_own(self, column: Column) -> None:
         """Add what to do with a network of one's own: each leads to where it is done, and is ticked once it was."""

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from game.core.settings import Settings
     from game.scenes.learn.chapter import Chapter
 
-PAGES: Final = ("predict", "try", "why")
-
 
 class Entry(NamedTuple):
     """Where a chapter is, "module.Class" in this package, and the minutes that it takes."""
@@ -60,8 +58,8 @@ class Progress:
 
     def guess(self, key: str) -> int | None:
         """Return the number of the answer that was given in a chapter; None before."""
-        guess = self._number(key, "guess")
-        return guess if guess is not None and guess < len(list(filter(None, texts.LEARN_ANSWERS[key]))) else None
+        guess, answers = self._of(key).get("guess"), list(filter(None, texts.LEARN_ANSWERS[key]))
+        return guess if type(guess) is int and 0 <= guess < len(answers) else None
 
     def answer(self, key: str) -> str:
         """Return the words of the answer that was given; empty before."""
@@ -73,29 +71,12 @@ class Progress:
         return 2 if self._of(key).get("done") is True else int(isinstance(self._settings.learnt.get(key), dict))
 
     def done(self, key: str) -> bool:
-        """Return whether a chapter's question was answered by a try, and its "see why" read."""
+        """Return whether a chapter's question was answered by a try."""
         return self.state(key) == 2
-
-    def shown(self, key: str) -> tuple[str, int | None]:
-        """Return what the latest tries in a chapter have shown, empty before, and the number of the answer that came.
-
-        What was written in another language is not said again.
-        """
-        why = self._of(key).get("why") if self._of(key).get("language") == texts.LANGUAGE else ""
-        came = self._number(key, "came")
-        return why if isinstance(why, str) else "", came if came in range(len(texts.LEARN_ANSWERS[key])) else None
-
-    def show(self, key: str, why: str, came: int | None) -> None:
-        """Keep what tries in a chapter have shown, for the next visit."""
-        self._settings.learnt[key] = {**self._of(key), "why": why, "language": texts.LANGUAGE, "came": came}
 
     def note(self, key: str, **values: int | bool) -> None:
         """Note that a chapter was opened, and a `guess`, or that it is `done`."""
         self._settings.learnt[key] = {**self._of(key), **values}
-
-    def _number(self, key: str, name: str) -> int | None:
-        value = self._of(key).get(name)
-        return value if type(value) is int and value >= 0 else None
 
     def _of(self, key: str) -> dict[str, Any]:
         noted = self._settings.learnt.get(key)

@@ -29,12 +29,13 @@ from game.ui.panel import Column
 
 Flown = dict[str, float]
 ENDS: Final = dict(zip(("landed", "crashed", "gone", "late"), list(Outcome)[1:], strict=True))
-# What each pay is: a landing, haste, time aloft, fuel. By the key of its texts.
+# What each pay is, by the key of its texts.
 PAYS: Final = {
-    "landing": RewardWeights(time=-0.4, switch=-0.05),
+    "landing": RewardWeights(switch=-0.05),
     "aloft": RewardWeights(time=1.0, switch=-0.05),
     "haste": RewardWeights(time=-8.0, switch=-0.05, terminal=20.0),
     "fuel": RewardWeights(time=0.0, switch=-0.05, engine=-4.0, terminal=30.0),
+    "end": RewardWeights(distance=0.0, speed=0.0, alignment=0.0, tilt=0.0, feet=0.0, switch=-0.05),
 }
 ASKED: Final = "aloft"  # the pay that the question is about
 DECISIONS: Final = 24_000  # of single landers, after which it is looked at
@@ -85,7 +86,7 @@ class Trial:
 
 
 class PayChapter(Chapter):
-    """A choice of four pays; the run of the chosen one; and its flights.
+    """A choice of pays; the run of the chosen one; and its flights.
 
     Attributes:
         pay: key of the chosen pay.
@@ -144,6 +145,7 @@ class PayChapter(Chapter):
             engine=points(pay.engine / DT, 1),
             landing=points(pay.terminal, 0),
             crash=points(-pay.terminal, 0),
+            way=texts.LEARN_PAY_WAY[pay.distance > 0],
         )
 
     def choose(self, index: int) -> None:
@@ -184,7 +186,8 @@ class PayChapter(Chapter):
         for _ in range(_PACE):
             trial.step()
         if trial.over:
-            self.results[self.pay], self.tried, self.changed = trial.flown(), True, True
+            self.results[self.pay], self.changed = trial.flown(), True
+            self.found()
 
     def verdict(self) -> int | None:
         """Return what most flights did on the pay of the question: land, fly on, or crash; None before it was tried."""

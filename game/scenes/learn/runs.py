@@ -105,8 +105,9 @@ class RunsChapter(Chapter):
             self.take(states)
         if self.over:
             self.close()
-            self.tried = self.changed = True
+            self.changed = True
             self.finish()
+            self.found()
 
     def finish(self) -> None:
         """Take note that the runs have come to their end."""

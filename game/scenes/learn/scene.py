@@ -1,7 +1,8 @@
-"""Chapter scene: one chapter of the path, in three pages: predict, try, see why."""
+"""Chapter scene: a chapter on one page that grows: a question, the thing to touch, what the player's try has shown."""
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from typing import Final
 
@@ -16,20 +17,21 @@ from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, STEP, TEXT, TITLE, Colo
 from game.explain.code_listing import add_listing
 from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.learn.path import FIRST, PAGES, PATH, Progress, chapter_type, following
+from game.scenes.learn.path import FIRST, PATH, Progress, chapter_type, following
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column, Panel, Row
 from game.ui.panel_scene import PanelScene
 from game.ui.widget import OnPress
 
-PREDICT, TRY, WHY = range(len(PAGES))
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
 _AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
-_LISTING: Final = 420.0  # height of a listing
+_LISTING: Final = 320.0  # height of a listing
 _INDENT: Final = 18.0  # of a verdict, behind its line
+_FEW: Final = 340  # letters of an explanation, some four lines, before the rest of it is asked for
+_MORE: Final = "learn"  # name in the settings of what stays open
 
 
 class ChapterScene(PanelScene):
@@ -37,8 +39,10 @@ class ChapterScene(PanelScene):
 
     Attributes:
         chapter: the chapter that is shown.
-        page: which of `PAGES` is shown, by its index.
-        in_code: whether "see why" shows the line of code that did it, in place of the picture.
+        begun: whether the thing to touch stands there, since a guess was given or passed over.
+        finding: what the player's tries have shown; empty before.
+        came: number of the answer that they have shown; None while they decide nothing.
+        in_code: whether the line of code that did it stands in place of the picture.
 
     """
 
@@ -47,13 +51,11 @@ class ChapterScene(PanelScene):
         self._progress, self.explained = Progress(context.settings), Explained()
         self.chapter = chapter_type(key)(context)
         # One that is done asks for a guess again.
-        guessed = self._progress.guess(key) is not None and not self._progress.done(key)
-        self.page = TRY if guessed else PREDICT
-        self.in_code = False
-        self._why, self._came = self._progress.shown(key)
-        context.settings.chapter = key
+        self.begun = self._progress.guess(key) is not None and not self._progress.done(key)
+        self.finding, self.in_code = "", False
+        self.came: int | None = None
         self._progress.note(key)
-        self.turn_to(self.page)
+        self.build()
 
     def enter(self) -> None:
         self.reword()
@@ -67,48 +69,39 @@ class ChapterScene(PanelScene):
         """Key of the chapter."""
         return self.chapter.key
 
-    def turn_to(self, page: int) -> None:
-        """Show another page; "see why" makes a chapter done whose question a try has answered."""
-        on_tabs = page != self.page and self.form.focused is self._tabs
-        self.page, self.in_code = page, False
-        self.panel.scrolled = 0.0
-        self.reword()
-        if page == WHY and self._why:
-            self._progress.show(self.key, self._why, self._came)
-            self._progress.note(self.key, done=self._came is not None or self._progress.done(self.key))
+    def begin(self, guess: int | None = None) -> None:
+        """Go on to the thing to touch, with the number of an answer or without."""
+        if guess is not None:
+            self._progress.note(self.key, guess=guess)
+        self.begun = True
         self.context.apply_settings()
-        if not on_tabs:
-            self.form.focus(self.form.widgets[1])
+        self.build()
+        self.form.focus(self.form.widgets[0])
 
     def reword(self) -> None:
-        """Describe the page with the numbers of this moment: of what runs on they could not be read otherwise."""
-        self._why, self._came = self._progress.shown(self.key)
-        self._tried = self.chapter.tried
-        if self._tried:
-            self._why, came = self.chapter.why(), self.chapter.verdict()
-            self._came = self._came if came is None else came
+        if self.chapter.tried:
+            self._find()
         self.build()
 
+    def _find(self) -> None:
+        """Say what the tries have shown; a chapter whose question they have answered is done."""
+        self.finding, came = self.chapter.why(), self.chapter.verdict()
+        if came is not None:
+            self.came = came
+            self._progress.note(self.key, done=True)
+            self.context.apply_settings()
+
     def _restart(self) -> None:
-        """Begin the chapter's picture anew."""
-        if not self.chapter.problem:
-            if self.chapter.tried:  # what was shown stays
-                self.reword()
-                self._progress.show(self.key, self._why, self._came)
+        """Begin the chapter's picture anew; what was shown stays."""
+        if self.begun and not self.chapter.problem:
             self.chapter.restart()
             self.build()
 
     def actions(self) -> Table:
-        again = [Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.page == TRY else []
-        last = texts.LEARN_NEXT_CHAPTER if following(self.key) else ""
-        on = last if self.page == WHY else texts.LEARN_NEXT_PAGE
         return [
-            self.form.moves,
             self.form.changes,
-            *again,
-            Action(Command.NEXT, self._go_on, on),
-            Action(Command.PREVIOUS, partial(self._turn, -1)),
-            *([self.explained.action()] if self.chapter.explains else []),
+            *([Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.begun else []),
+            *([self.explained.action()] if self.chapter.explains and self._picture else []),
             self.form.goes_back(texts.HINT_BACK),
         ]
 
@@ -116,28 +109,19 @@ class ChapterScene(PanelScene):
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
-        if self.page != PREDICT and not self.chapter.problem:
-            self.chapter.update()
-        if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._tried):
-            self.turn_to(WHY)  # what was begun on the page before has come to its end
-        elif self.chapter.changed:
+        chapter = self.chapter
+        if self.begun and not chapter.problem:
+            chapter.update()
+        if chapter.news:
+            chapter.news, chapter.changed = False, chapter.changed or not self.finding
+            self._find()
+        if chapter.changed and not any(widget.held for widget in self.form.widgets):  # or a drag would end
             self.build()
-        self.chapter.changed = False
+            chapter.changed = False
         self.explained.update()
         return super().update()
 
-    def _guess(self, number: int) -> None:
-        self._progress.note(self.key, guess=number)
-        self.turn_to(TRY)
-
-    def _turn(self, pages: int) -> None:
-        if 0 <= self.page + pages < len(PAGES):
-            self.turn_to(self.page + pages)
-
     def _go_on(self) -> Transition | None:
-        if self.page < WHY:
-            self._turn(1)
-            return None
         after = following(self.key)
         return Replace(Route("chapter", (after,))) if after else self.form.goes_back("").run()
 
@@ -148,10 +132,10 @@ class ChapterScene(PanelScene):
         panel.title(f"{number}   {words['title']}", TITLE + 6)
         panel.text(words["question"], colour=MUTE)
         panel.gap(6)
-        self._tabs = panel.choice("", texts.LEARN_PAGES, self.page, self.turn_to)
-        panel.gap(6)
         left, right = panel.beside(_SHARES, _LEAST, _APART)
-        [self._describe_predict, self._describe_try, self._describe_why][self.page](left)
+        left.text(words["lead"], size=_BODY, colour=MUTE)
+        left.gap(8)
+        (self._describe_try if self.begun else self._describe_question)(left)
         self._picture: Row | None = None
         self._high = 0.0
         if self.chapter.problem:
@@ -162,14 +146,14 @@ class ChapterScene(PanelScene):
             self._picture = right.add(self._leave_room)
             right.gap(4)
             self.chapter.below(right)
+        if self.begun and not self.chapter.problem and self.chapter.code():
+            right.button(texts.LEARN_CODE[self.in_code], self._show_code, size=SMALL + 1)
+        if self.finding:
+            panel.gap(10)
+            panel.line()
+            self._describe_finding(panel)
         panel.gap(10)
-        labels = (*texts.LEARN_ON, texts.LEARN_TO_CHAPTER if following(self.key) else texts.LEARN_TO_LIST)
-        further: list[tuple[str, OnPress]] = []
-        if self.page == WHY:
-            if not self.chapter.problem and self.chapter.code():
-                further.append((texts.LEARN_CODE[self.in_code], self._show_code))
-            further.append((words["door"], lambda: Push(self.chapter.door)))
-        panel.words([(labels[self.page], self._go_on), *further])
+        panel.words(self._ways())
 
     def _leave_room(self, cursor: Cursor) -> None:
         """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
@@ -178,61 +162,73 @@ class ChapterScene(PanelScene):
             self._high = min(whole, max(cursor.seen.height - _AROUND, _LOWEST * whole))
         cursor.take(self._high)
 
-    def _describe_predict(self, column: Column) -> None:
-        column.text(self.chapter.words["lead"], size=_BODY, colour=MUTE)
-        column.gap(8)
+    def _describe_question(self, column: Column) -> None:
         column.text(self.chapter.words["predict"])
         guess = self._progress.guess(self.key)
         for number, answer in enumerate(filter(None, texts.LEARN_ANSWERS[self.key])):
-            column.button(answer, partial(self._guess, number), colour=HUMAN if number == guess else _OPEN)
+            column.button(answer, partial(self.begin, number), colour=HUMAN if number == guess else _OPEN)
 
     def _describe_try(self, column: Column) -> None:
-        column.text(lambda: self.chapter.words["task"], size=_BODY)
+        column.add(self._write_verdict)
+        column.text(self.chapter.words["task"], size=_BODY)
         column.gap(6)
         if not self.chapter.problem:
             self.chapter.controls(column)
 
-    def _describe_why(self, column: Column) -> None:
-        guess = self._progress.guess(self.key)
-        if guess is not None:
-            column.add(partial(self._write_verdict, guess))
-        waits = texts.LEARN_STILL_RUNS if self.chapter.running else texts.LEARN_TRY_FIRST
-        column.text(self._why or waits, size=_BODY)
-        column.gap(8)
-        for name in ("why", "differs"):
-            column.text(self.chapter.words.get(name, ""), size=_BODY, colour=MUTE)
-            column.gap(8)
+    def _describe_finding(self, panel: Panel) -> None:
+        """Add what the player's tries have shown, and why: the first sentences, and then all of them."""
+        own, general = panel.beside(_SHARES, _LEAST, _APART)
+        own.text(lambda: self.finding, size=_BODY)
+        whole = f"{self.chapter.words['why']} {self.chapter.words.get('differs', '')}".rstrip()
+        few = _first_sentences(whole)
+        opened = self.context.settings.is_open(_MORE)
+        general.text(whole if opened else few, size=_BODY, colour=MUTE)
+        if few != whole:
+            general.button(texts.MORE[opened], self._open_more, size=SMALL + 1)
 
-    def _write_verdict(self, guess: int, cursor: Cursor) -> None:
-        """Write the card of a guess: what was said, and what came of the player's tries."""
-        answers, came, top = texts.LEARN_ANSWERS[self.key], self._came, cursor.y
-        open_words = texts.LEARN_UNDECIDED.get(self.key, "") if self._why else ""
-        colour = MUTE
-        if came is not None and cursor.canvas:
-            colour = cursor.canvas.palette.good if came == guess else cursor.canvas.palette.warn
+    def _open_more(self) -> None:
+        self.context.settings.unfold(_MORE)
+        self.context.apply_settings()
+        self.build()
+
+    def _ways(self) -> list[tuple[str, OnPress]]:
+        """Return the ways on."""
+        if not self.begun:
+            return [(texts.LEARN_NO_GUESS, self.begin)]
+        return [
+            (texts.LEARN_TO_CHAPTER if following(self.key) else texts.LEARN_TO_LIST, self._go_on),
+            (self.chapter.words["door"], lambda: Push(self.chapter.door)),
+        ]
+
+    def _write_verdict(self, cursor: Cursor) -> None:
+        """Write what was said, and beside it what came of the player's tries."""
+        guess, came, top = self._progress.guess(self.key), self.came, cursor.y
+        if guess is None and came is None:
+            return
+        palette, colour = cursor.palette, MUTE
+        if came is not None:
+            colour = palette.good if came == guess else palette.warn if guess is not None else INK
         card = cursor.in_style(TEXT, HUMAN)
         card.left, card.width = cursor.left + _INDENT, cursor.width - _INDENT
-        card.gap(4)
-        card.caption(texts.LEARN_YOU_SAID)
-        card.text(self._progress.answer(self.key))
-        card.gap(8)
-        said = answers[came] if came is not None else open_words
-        if said:
+        if guess is not None:
+            card.caption(texts.LEARN_YOU_SAID)
+            card.text(self._progress.answer(self.key))
+            card.gap(6)
+        if came is not None or self.finding:
             card.caption(texts.LEARN_UNSETTLED if came is None else texts.LEARN_CAME[came == guess])
             place = (card.right - 14, card.y + 0.6 * card.size)
-            if came is not None and cursor.canvas:
+            if came is not None and guess is not None and cursor.canvas:
                 cursor.canvas.marker("check" if came == guess else "cross", place, 16, colour)
             card.colour, card.width = INK if came is not None else MUTE, card.width - 36
-            card.text(said)
-            card.gap(4)
+            card.text(texts.LEARN_UNDECIDED[self.key] if came is None else texts.LEARN_ANSWERS[self.key][came])
         if cursor.canvas:
             cursor.canvas.fill(cursor.canvas.rect(cursor.left, top, 3, card.y - top), colour)
-        cursor.y = card.y + 2 * STEP
+        cursor.y = card.y + 1.5 * STEP
 
     def _show_code(self) -> None:
         """Show the code, or the picture again."""
         self.in_code = not self.in_code
-        self.reword()
+        self.build()
 
     def _describe_listing(self, column: Column) -> None:
         code = self.chapter.code()
@@ -252,3 +248,12 @@ class ChapterScene(PanelScene):
             self.chapter.draw(canvas, self._picture.box, alpha)
             canvas.surface.set_clip(before)
         self.explained.draw(canvas)
+
+
+def _first_sentences(words: str) -> str:
+    """Return the sentences at the beginning of a text that are few letters together, one at least."""
+    sentences = re.split(r"(?<=[.!?]) ", words)
+    few = sentences.pop(0)
+    while sentences and len(few) + 1 + len(sentences[0]) <= _FEW:
+        few += f" {sentences.pop(0)}"
+    return few

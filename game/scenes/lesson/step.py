@@ -1,4 +1,4 @@
-"""One learning step of the agent, as the frames on network, gradient and optimizer need it, and what it pulled."""
+"""One learning step of the agent, with the names of all that it moves, and what it pulled."""
 
 from __future__ import annotations
 
@@ -37,7 +37,6 @@ class LearningStep:
         observation: (inputs,) that the network was given.
         inputs, outputs: names of the network's ends.
         scale: size of one point of reward in the unit of the network's outputs.
-        optimizer: name of the optimizer.
         examples: number of examples in the batch.
 
     """
@@ -48,7 +47,6 @@ class LearningStep:
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     scale: float
-    optimizer: str
     examples: int
 
     @cached_property
@@ -103,11 +101,6 @@ class LearningStep:
     def _carried(self) -> str | None:
         """What the optimizer carries on of earlier slopes, by its name; None if it carries on nothing."""
         return next((name for name in _RUNNING if name in self.taken.optimizer_after), None)
-
-    @property
-    def carries_on(self) -> bool:
-        """Whether the optimizer remembers earlier slopes: then a weight may move up its slope."""
-        return self._carried is not None
 
     @cached_property
     def pace(self) -> Array:

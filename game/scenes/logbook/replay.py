@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Hashable
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -11,21 +12,21 @@ import pygame
 
 from ai.files import free_path
 from ai.flights.code import code_of
-from ai.flights.recording import SharedFlight
+from ai.flights.recording import ClaimedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.core.names import LONGEST_NAME, fitting
-from game.core.scene import Pop, Transition, push
-from game.drawing import typeface
+from game.core.scene import Transition, push
+from game.core.shelf import LONGEST_NAME, fitting
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.shapes import Shape
-from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
 from game.explain import readouts
 from game.explain.explained import Explained
 from game.export.film import Export, films_dir
-from game.flight import networks, sharing
+from game.flight import codes, networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.foresight import SixFutures
@@ -36,29 +37,23 @@ from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
-from game.ui.form import FormScene, Part
-from game.ui.hints import HintRow
-from game.ui.panel import Panel
 from game.ui.playback import Playback
-from game.ui.rows import ButtonRow
-from game.ui.widget import OnPress, Widget
+from game.ui.rows import ButtonRow, ChoiceRow
+from game.ui.widget import OnPress
+from game.ui.world_scene import WorldScene
 from game.world.camera import ClearArea, View
+from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
 from game.world.paths import draw_faint, draw_futures
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
-_EARTH: Final = (208.0, 306.0)  # points; clear of the words
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
-_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
-_FIGURE: Final = 88.0  # half of what the seconds take, and who flies
-_VERBS: Final = 141.0  # where the words begin
-_CLEAR: Final = ClearArea(head=_VERBS + 42.0)  # below them
-_LABELS: Final = 60.0
-_FIRST_HINTS: Final = 4  # hints in the first row
+_OPEN: Final = "replay"  # what stays open, by its name in the settings
+_SECONDS: Final = 22.0  # size of the moment that is shown
 
 
-class ReplayScene(FormScene):
+class ReplayScene(WorldScene):
     """Replay of a recorded flight.
 
     Attributes:
@@ -69,25 +64,22 @@ class ReplayScene(FormScene):
 
     takes_tab = True
 
-    def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
+    def __init__(self, context: Context, record: Record, friend: ClaimedFlight | None = None) -> None:
         super().__init__(context)
-        self.record = record
+        self.record, self.friend = record, friend
         self._pace = TimeScale()
         self.playback = Playback(self._pace, SPEEDS, self._fly)
         self._warned = False
-        self._asks, self._looked = False, -1  # whether futures are asked for, and of which step they are
+        self._looked = -1  # the step of which the futures are
         self._futures: SixFutures | None = None
         self.explained = Explained()
         self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
-        self.form.anchor = (0, -1)
-        self.friend = friend
-        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
+        self._readouts = readouts.flight_readouts(self.flight_replay.flight.env)
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
-        self._build()
-        self._readouts: dict[str, readouts.Readout] = {}
-        self._look()
+        self.build()
 
     def enter(self) -> None:
         self.playback.stopped = True
@@ -110,9 +102,10 @@ class ReplayScene(FormScene):
         table = [
             stop,
             step,
-            Action(Command.RETRY, self._replay, texts.REPLAY_FROM_START),
-            Action(Command.HANDOVER, self._take_over, texts.REPLAY_HINT_TAKE),
+            self.explained.action(),
             self.form.goes_back(texts.HINT_BACK),
+            Action(Command.RETRY, self._replay),
+            Action(Command.HANDOVER, self._take_over),
             *speeds,
             Action(pygame.K_HOME, lambda: self.go_to(0)),
             Action(pygame.K_END, lambda: self.go_to(self.flight_replay.length)),
@@ -120,13 +113,7 @@ class ReplayScene(FormScene):
         if on_strip or self.context.controls.gamepad_in_use:
             winds = ((Command.NEXT, 60), (Command.PREVIOUS, -60))
             table += [Action(command, partial(self._wind, steps)) for command, steps in winds]
-        return [*table, Action(pygame.K_t, self._show_futures, texts.REPLAY_FUTURES), self.explained.action()]
-
-    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        right, top = canvas.view.right - MARGIN, canvas.view.top
-        room, hints = right - VIEW_SIZE[0] / 2 - _FIGURE, self.hints
-        rows = ((hints[:_FIRST_HINTS], 38), (hints[_FIRST_HINTS:], 60))
-        return [HintRow(row, (right, top + y), from_right=True, room=room) for row, y in rows if row]
+        return table
 
     def update(self) -> Transition | None:
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
@@ -143,9 +130,7 @@ class ReplayScene(FormScene):
         if not self.playback.stopped:
             self._heard.follow(self._scenery.stage.thrust[0])
         self._scenery.animate()
-        outcome = self.form.update()
-        self._lay_out()
-        return outcome
+        return super().update()
 
     # Time
 
@@ -155,16 +140,10 @@ class ReplayScene(FormScene):
         self._pace.begin()
         self._look()
 
-    def _show_futures(self) -> None:
-        self._futures = None
-        self._asks = not self._asks
-        if self._asks:
-            self.playback.stopped = True
-
     def _look_ahead(self) -> None:
-        """Fly the six futures of the moment that is shown, if somebody asks and nothing moves."""
+        """Fly the six futures of the moment that is shown, if somebody asks what there is and nothing moves."""
         flight = self.flight_replay.flight
-        if not self._asks or flight.over or not self.playback.stopped:
+        if not self.explained.stepping or flight.over or not self.playback.stopped:
             self._futures = None
             return
         if self._futures is None or self._looked != self.flight_replay.at:
@@ -172,8 +151,6 @@ class ReplayScene(FormScene):
             elsewhere = flown_elsewhere(self.record.recording)
             policy = networks.chosen(context.models_dir, context.user_dir, context.settings.model, elsewhere).policy
             if policy is None:
-                self._asks = False
-                self.context.note(texts.REPLAY_NO_FUTURES)
                 return
             self._futures = SixFutures(policy, flight.route)
             self._futures.begin(flight.env)
@@ -213,38 +190,41 @@ class ReplayScene(FormScene):
         self.go_to(0)
         self.playback.stopped = False
 
-    # Words
+    # Rows
 
-    def _build(self) -> None:
-        recording = self.record.recording
+    def describe(self) -> None:
+        """Add which flight it is, and its moment; the read-outs, the strip, and what can be done with the flight."""
+        head, foot, recording = self.head, self.foot, self.record.recording
+        head.aside(lambda: self._titles()[0])
+        head.text(lambda: self._titles()[1])
+        head.add(self._write_moment)
+        foot.add(lambda cursor: readouts.write_readouts(cursor, self._readouts))
         flown = [push.action for push in recording.pushes], recording.hands
-        self._strip = Timeline(_STRIP, texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go)
-        self.form.add(self._strip)
-        self._rows: list[Widget] = []
-        self._describe()
+        self._strip = foot.widget(Timeline(texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go))
+        more = self.context.settings.is_open(_OPEN)
+        race = texts.FRIEND_ANSWER if self.friend else texts.LOGBOOK_RACE
+        words: list[tuple[str, OnPress]] = [(texts.REPLAY_TAKE_OVER, self._take_over), (race, self._race)]
+        if more:
+            words += [(texts.CODE_COPY, self._copy), (self._export_words, self._begin_or_stop_export)]
+        rows: list[ButtonRow | ChoiceRow] = [ButtonRow(label, press, size=SMALL) for label, press in words]
+        self._export_word = rows[-1]
+        rows += [self.playback.choice()] if more else []
+        rows.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
+        rows[-1].key = "more"
+        foot.flow(rows)
 
-    def _describe(self) -> None:
-        part, self._size = Part(self.form), (size := typeface.grown(SMALL))
-        self._panel = Panel(part)
-        speeds, verbs = self._panel.beside((2, 3), least=0.0)
-        self.playback.describe(speeds, size).compact(_LABELS, ButtonRow.pad)
-        words: list[tuple[str, OnPress]] = [
-            (texts.REPLAY_TAKE_OVER, self._take_over),
-            (texts.FRIEND_ANSWER if self.friend else texts.LOGBOOK_RACE, self._race),
-            (texts.CODE_COPY, self._copy),
-            (texts.REPLAY_EXPORT, self._begin_or_stop_export),
-            (texts.BACK, Pop),
-        ]
-        *_, self._export_word, _ = verbs.words(words, size)
-        self.form.replace(self._rows, part.widgets)
-        self._rows = part.widgets
-        self._lay_out()
+    def state(self) -> Hashable:
+        return self.context.settings.is_open(_OPEN)
 
-    def _lay_out(self) -> None:
-        if self._size != typeface.grown(SMALL):
-            self._describe()
-        scale = self.context.reading().whole.scale
-        self._panel.lay_out(pygame.FRect(MARGIN, _VERBS, VIEW_SIZE[0] - 2 * MARGIN, 100.0), scale)
+    def lay_out(self) -> None:
+        super().lay_out()
+        if (clear := ClearArea.of(self.context.reading(), self.free)) != self._scenery.clear:
+            self._scenery.clear = clear
+            self._scenery.cut()
+
+    def _open_more(self) -> None:
+        self.context.settings.unfold(_OPEN)
+        self.context.apply_settings()
 
     def _take_over(self) -> Transition | None:
         if self.flight_replay.flight.over:
@@ -262,7 +242,7 @@ class ReplayScene(FormScene):
 
     def _copy(self) -> None:
         """Copy the flight as a code; a friend's as it came, with its own claim."""
-        code = code_of(self.friend) if self.friend else sharing.code(self.record)
+        code = code_of(self.friend) if self.friend else codes.code(self.record)
         give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
@@ -273,6 +253,12 @@ class ReplayScene(FormScene):
         path = free_path(films_dir(), name or texts.REPLAY_TITLE, ".gif")
         self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
+    @property
+    def _export_words(self) -> str:
+        """What a press on the film's word does now."""
+        share = self.export.share if self.export else 0.0
+        return texts.EXPORT_GOES_ON.format(percent=round(100 * share)) if self.export else texts.REPLAY_EXPORT
+
     def _stop_export(self) -> None:
         assert self.export is not None
         self.export.close()
@@ -280,7 +266,7 @@ class ReplayScene(FormScene):
 
     def _follow_export(self, export: Export) -> None:
         export.poll()
-        self._export_word.label = texts.EXPORT_GOES_ON.format(percent=round(100 * export.share))
+        self._export_word.label = self._export_words
         if export.over:
             failed = texts.EXPORT_FAILED.format(reason=export.problem)
             export.close()
@@ -288,64 +274,70 @@ class ReplayScene(FormScene):
 
     def _end_export(self, note: str) -> None:
         self.export = None
-        self._export_word.label = texts.REPLAY_EXPORT
+        self._export_word.label = self._export_words
         self.context.note(note)
 
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        self.draw_world(canvas, alpha)
-        self._draw_title(canvas)
-        self._draw_moment(canvas)
-        self.form.draw(canvas)
-        self._panel.draw(canvas.at(*self.form.anchor).ungrown)
-        self.draw_hints(canvas)
+        self._draw_world(self.framed(canvas), alpha)
+        readouts.draw_shade(canvas, self.foot.box.top)
+        self.draw_rows(canvas)
         self.explained.draw(canvas)
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
-        between = self.playback.between(alpha)
-        view = self._scenery.view(canvas.scale, between).filling(canvas)
-        self._scenery.draw_land(canvas, between, _EARTH)
-        _draw_way(canvas, view, self.flight_replay, _CLEAR.head)
-        if self._futures:
-            draw_futures(canvas, view, self._futures, _CLEAR.head)
-        self._scenery.draw_craft(canvas, between)
-        readouts.draw_flight(canvas, self._readouts)
+        """Draw the world with its read-outs, and without any words: for a film."""
+        foot = readouts.foot_of(canvas.reading, self._readouts)
+        self._draw_world(canvas.above(canvas.reading.view.bottom - foot.top), alpha)
+        readouts.draw_flight(canvas.reading, self._readouts)
 
-    def _draw_title(self, canvas: Canvas) -> None:
+    def _draw_world(self, canvas: Canvas, alpha: float) -> None:
+        between, head = self.playback.between(alpha), self._scenery.clear.head
+        view = self._scenery.view(canvas.scale, between).filling(canvas)
+        self._scenery.draw_land(canvas, between, self._scenery.clear.earth(EARTH, EARTH_RADIUS))
+        _draw_way(canvas, view, self.flight_replay, head)
+        if self._futures:
+            draw_futures(canvas, view, self._futures, head)
+        self._scenery.draw_craft(canvas, between)
+
+    def _titles(self) -> tuple[str, str]:
+        """Return what is replayed, and how it ended or what it earned."""
         if self.friend:
-            where, real = sharing.where(self.friend), self.flight_replay.earned
-            line = texts.FRIEND_LINE.format(where=where, earned=sharing.words(real)) if real else where
-            readouts.draw_corner(canvas, texts.FRIEND_TITLE, line)
-            return
+            where, real = codes.where(self.friend), self.flight_replay.earned
+            line = texts.FRIEND_LINE.format(where=where, earned=codes.words(real)) if real else where
+            return texts.FRIEND_TITLE, line
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
         title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
         end = ending_word(entry.outcome, intact=entry.intact)
-        readouts.draw_corner(canvas, title, texts.REPLAY_LINE.format(end=end, seconds=entry.seconds, when=when))
+        return title, texts.REPLAY_LINE.format(end=end, seconds=entry.seconds, when=when)
 
-    def _draw_moment(self, canvas: Canvas) -> None:
-        """Draw the seconds, and who flies at that moment or how it ended."""
-        flight = self.flight_replay.flight
-        seconds = f"{self.flight_replay.at * STEP:.2f}"
-        middle = VIEW_SIZE[0] / 2
-        canvas = canvas.at(0, -1)
-        figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
+    def _write_moment(self, cursor: Cursor) -> None:
+        """Write the seconds, and who flies at that moment or how it ended."""
+        flight, canvas, left = self.flight_replay.flight, cursor.canvas, cursor.left
         by_hand = flight.flown_by is StickHolder.HUMAN
         other = networks.sentence(texts.NETWORK_FLEW, networks.flew(self.record.entry.network))
         by = texts.FRIEND_FLEW[by_hand] if self.friend else texts.YOU_FLEW if by_hand else other
-        if self.ended:
-            by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
-        canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
+        if self.ended and flight.over:
+            by = ending_word(flight.outcome.name, intact=flight.intact)
+        y = cursor.y + BASELINE * _SECONDS
+        cursor.gap(LEADING * _SECONDS)
+        if canvas is None:
+            return
         if flight.over:
             good = flight.outcome is Outcome.LANDED
             colour = canvas.palette.good if good else INK if flight.intact else canvas.palette.warn
             mark: Shape = "check" if good else "diamond" if flight.intact else "cross"
-            canvas.marker(mark, (figure.left - 16, 51), 11, colour)
+            canvas.marker(mark, (left + 6, y - 7), 11, colour)
         elif self.playback.stopped:
-            for x in (figure.left - 20, figure.left - 15):
-                canvas.line((x, 45), (x, 57), INK, 2)
+            for x in (left + 3, left + 8):
+                canvas.line((x, y - 13), (x, y - 1), INK, 2)
+        else:
+            canvas.marker("circle", (left + 6, y - 7), 8, HUMAN if by_hand else NET)
+        seconds = f"{self.flight_replay.at * STEP:.2f} s"
+        figure = canvas.text(seconds, (left + 22, y), size=_SECONDS, weight="light", tabular=True)
+        canvas.text(by, (max(figure.right, left + 96) + 12, y), size=SMALL, colour=MUTE)
 
 
 def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay, head: float) -> None:

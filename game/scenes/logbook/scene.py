@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import INK, SMALL, TITLE
-from game.flight import sharing
+from game.flight import codes
 from game.flight.flight_file import Entry, Record
 from game.flight.friend import copy, paste
 from game.flight.logbook import Records, best
@@ -142,6 +142,6 @@ def why_not(entry: Entry) -> str:
 def entry_row(entry: Entry) -> Row:
     """Return a flight as a row of the logbook: the day, what, and its points or how it ended."""
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
-    course = sharing.course_name(entry.course, entry.leg, entry.spawn, entry.pads)
+    course = codes.course_name(entry.course, entry.leg, entry.spawn, entry.pads)
     result = points if entry.landed else ending_word(entry.outcome, intact=entry.intact)
     return time.strftime("%Y-%m-%d", time.localtime(entry.when)), course, result

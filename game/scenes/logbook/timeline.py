@@ -8,10 +8,11 @@ from typing import Final, TypeVar
 
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
 from game.flight.flight import StickHolder
-from game.ui.widget import Widget, mix
+from game.ui.widget import NOWHERE, RowWidget, mix
 
 V = TypeVar("V")
 _LABELS: Final = 84.0  # room for the lanes' names
@@ -23,19 +24,21 @@ _LIT: Final = mix(MUTE, INK, 0.5)
 _COLOURS: Final = {StickHolder.HUMAN: HUMAN, StickHolder.NETWORK: NET}
 
 
-class Timeline(Widget):
+class Timeline(RowWidget):
     """Lanes of a flight's actions (steps,) and who flew them; `on_go_to` is called with the step to show."""
+
+    pad = 2.0
 
     def __init__(
         self,
-        box: tuple[float, float, float, float],
         words: Sequence[str],
         actions: Sequence[int],
         hands: Sequence[StickHolder],
         on_go_to: Callable[[int], None],
         on_press: Callable[[], None],
     ) -> None:
-        super().__init__(box, "")
+        super().__init__(NOWHERE, "")
+        self.key = "strip"
         self._still = PaintCache()
         self._words, self._on_go_to, self._on_press = words, on_go_to, on_press
         self.length = max(1, len(actions))
@@ -72,8 +75,12 @@ class Timeline(Widget):
         left, width = self.track
         return left + width * min(max(step / self.length, 0.0), 1.0)
 
-    def paint(self, canvas: Canvas) -> None:
-        super().paint(canvas)
+    def write(self, cursor: Cursor) -> None:
+        cursor.take(_TOP + 12 + len(self._lanes) * _LANE)
+        if cursor.canvas:
+            self._paint(cursor.canvas)
+
+    def _paint(self, canvas: Canvas) -> None:
         (left, width), top = self.track, self.box.top + _TOP
         self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)
         far = self.place(self.reached)
@@ -96,7 +103,7 @@ class Timeline(Widget):
         lay(self._hands, _TOP)
         for number, (word, lane) in enumerate(zip(self._words, self._lanes, strict=True)):
             y = _TOP + 12 + number * _LANE
-            canvas.text(word, (0, y + 4), size=LABEL - 1, colour=MUTE)
+            canvas.text(word, (0, y + 4), size=LABEL, colour=MUTE)
             canvas.line((left, y + 1), (left + width, y + 1), LINE)
             lay(lane, y - 0.5)
 

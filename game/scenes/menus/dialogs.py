@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 import pygame
 
 from game.core import texts
-from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Scene, Transition
+from game.core.shelf import LONGEST_NAME, fitting
 from game.drawing.tokens import FAINT
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel_scene import PanelScene, StillPicture

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 from game.audio.instruments import GROUPS
 from game.core import catalogue, texts
-from game.core.names import reason
 from game.core.scene import Push, Transition, push
 from game.core.settings import PACES
+from game.core.shelf import reason
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, FIGURE, INK, NIGHT1, SMALL, TEXT_SIZES
 from game.flight.progress import put_away

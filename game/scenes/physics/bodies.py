@@ -12,7 +12,7 @@ import numpy as np
 import pygame
 
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
-from engine.vector import Array, Bools, dot, right_of, rotate
+from engine.vector import Array, dot, right_of, rotate
 from game.core import texts
 from game.drawing import shapes
 from game.drawing.canvas import Canvas
@@ -24,7 +24,6 @@ _MARK: Final = (0.45, 0.82)  # start and end of the mark that shows a disc's rot
 _EDGE: Final = 1.2  # points
 _FILL: Final = 0.26
 _LIT: Final = 0.45
-_ASLEEP: Final = 0.5  # share of its colour that a sleeping body keeps
 # Length of a line that shows a force, in points: for the weight of a kilogram, and of the longest.
 _PER_WEIGHT: Final = 6.0
 _LONGEST: Final = 72.0
@@ -70,15 +69,10 @@ class Outlines:
         layers = sorted({sprite.layer for sprite in sprites})
         self._layers = [_Layer([sprite for sprite in sprites if sprite.layer == layer]) for layer in layers]
 
-    def draw(
-        self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool, asleep: Bools | None = None
-    ) -> None:
-        """Draw every sprite at its body's pose (bodies, 3); draw body `lit` brighter, and in amber if `held`.
-
-        Bodies that are `asleep`, (bodies,), are drawn faintly.
-        """
+    def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None = None, *, held: bool = False) -> None:
+        """Draw every sprite at its body's pose (bodies, 3); draw body `lit` brighter, and in amber if `held`."""
         for layer in self._layers:
-            layer.draw(canvas, view, poses, lit, held, asleep)
+            layer.draw(canvas, view, poses, lit, held)
 
     def body_at(self, poses: Array, place: Array, reach: float) -> Body | None:
         """Return the movable body at a place in metres, or within `reach` of it; None if there is none."""
@@ -117,14 +111,11 @@ class _Layer:
             for (row, _), start, end in zip(angular, (ends - lengths).tolist(), ends.tolist(), strict=True)
         ]
 
-    def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool, asleep: Bools | None) -> None:
+    def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool) -> None:
         """Draw the layer as `Outlines.draw` does."""
-        faint = set() if asleep is None else set(np.flatnonzero(asleep).tolist())
 
         def shades(index: int, colours: _Colours) -> _Colours:
-            if index != lit:
-                return _colours(mix(NIGHT1, colours[0], _ASLEEP), _FILL) if index in faint else colours
-            return _colours(HUMAN if held else mix(colours[0], INK, 0.6), _LIT)
+            return _colours(HUMAN if held else mix(colours[0], INK, 0.6), _LIT) if index == lit else colours
 
         if self._angular:
             self._draw_angular(canvas, view, poses, shades)

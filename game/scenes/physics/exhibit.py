@@ -19,6 +19,7 @@ CLEAR: Final = 0.35  # height that is seen above the ground, as a share of the r
 BELOW: Final = 0.05  # and below it
 _WALL: Final = 12.0  # metres; in a step nothing moves so far that it would be pressed out on the other side
 _FIXED, _BOXES, _DISCS = range(3)  # layers
+_BESIDE: Final = 6.0  # points between a body's edge and its words
 # Of a grip: its spring's rad/s, its damping, 1 being critical, and its greatest m/s²: a hand throws, it tears nothing.
 _PACE, _DAMPING, _STRONGEST = 12.0, 0.8, 150.0
 
@@ -57,6 +58,7 @@ class Label:
     """Words in the room, centred on a place in metres, or at that offset from a body.
 
     Attributes:
+        reach: metres from a body's middle to its edge, beside which the words begin; 0 for words that are centred.
         within: whether the value is within its limit, shown by a mark beside the words; None for no mark.
 
     """
@@ -65,6 +67,7 @@ class Label:
     place: tuple[float, float]
     body: Body | None = None
     within: bool | None = None
+    reach: float = 0.0
 
     def draw(self, canvas: Canvas, view: View, poses: Array) -> None:
         """Draw it with its mark; `poses` (bodies, 3) are as drawn."""
@@ -72,6 +75,10 @@ class Label:
         if self.body is not None:
             place = place + poses[self.body.index, :2]
         x, y = view.points(place).tolist()
+        if self.reach:
+            beside = x + self.reach * view.pixels_per_metre / canvas.scale + _BESIDE
+            canvas.text(self.text, (beside, y + 4), size=SMALL, colour=MUTE, tabular=True)
+            return
         left = canvas.text(self.text, (x, y + 4), size=SMALL, colour=MUTE, align="centre", tabular=True).left - 10
         if self.within:
             canvas.dot((left, y), 2.5, canvas.palette.good)

@@ -188,7 +188,8 @@ class DragRace(Exhibit):
     def labels(self) -> list[Label]:
         labels = []
         for number, (disc, (name, mass, _, _)) in enumerate(zip(self.discs, self.lanes, strict=True)):
-            labels.append(Label(texts.DRAG_SPEED.format(speed=speed(disc)), (2.0, 0.1), disc))
+            edge = _DISC * math.sqrt(mass)
+            labels.append(Label(texts.DRAG_SPEED.format(speed=speed(disc)), (0.0, 0.0), disc, reach=edge))
             words = texts.DRAG_LANES[name].format(mass=mass, terminal=self.terminal(number))
             below = _FOOT * self.width * (1 + 1.4 * (number % 2))  # in two rows: they are long
             labels.append(Label(words, (self._lane(number), below)))

@@ -15,7 +15,7 @@ from game.core.clock import TimeScale
 from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL
 from game.explain.explained import Explained
 from game.input.controls import Command
 from game.scenes.physics.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
@@ -31,7 +31,6 @@ from game.ui.widget import OnPress
 from game.world.camera import View
 
 GRAVITIES: Final = (1.62, 9.81)
-SPEEDS: Final = (0.25, 0.5, 1.0)
 _MORE: Final = "physics"  # name in the settings of what stays open
 _LEAST: Final = 300.0  # points of a column
 _REACH: Final = 8.0  # points by which the mouse may miss a body
@@ -52,7 +51,7 @@ class PhysicsScene(PanelScene):
         super().__init__(context, self._pause)
         self.chosen, self._gravity = exhibit, 0
         self._clock = TimeScale()
-        self.playback = Playback(self._clock, SPEEDS, self._step)
+        self.playback = Playback(self._clock, (1.0,), self._step)
         self.values: dict[str, dict[str, float]] = {}
         self._waits: int | None = None  # steps until the exhibit is made anew
         self.contacts_drawn = False
@@ -124,7 +123,7 @@ class PhysicsScene(PanelScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        stop, step, *speeds = self.playback.actions(texts.HINT_STEP if self.more else "")
+        stop, step, *_ = self.playback.actions("")
         return [
             stop,
             step,
@@ -134,7 +133,6 @@ class PhysicsScene(PanelScene):
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
             Action(Command.CHOICES, self.toggle_contacts),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
-            *speeds,
         ]
 
     def _pause(self) -> Transition:
@@ -165,7 +163,7 @@ class PhysicsScene(PanelScene):
         words: list[tuple[str, OnPress]] = [
             (texts.PHYSICS_START_VALUES, self._reset),
             (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
-            (texts.PHYSICS_MORE[self.more], self._open_more),
+            (texts.MORE[self.more], self._open_more),
         ]
         buttons = column.words(words)
         self._inside = buttons[1]
@@ -173,20 +171,16 @@ class PhysicsScene(PanelScene):
         if not self.more:
             return
         column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
-        self.playback.describe(column)
-        column.explain(what["speed"])
         column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
         column.explain(what["contacts"])
-        column.pair(texts.KINETIC_ENERGY, lambda: f"{self.exhibit.kinetic_energy:.1f} J")
-        column.explain(what["energy"])
 
     @property
     def more(self) -> bool:
-        """Whether gravity, speed, contacts and figures stand there, too."""
+        """Whether gravity and contacts stand there, too."""
         return self.context.settings.is_open(_MORE)
 
     def _open_more(self) -> None:
-        self.context.settings.open(_MORE)
+        self.context.settings.unfold(_MORE)
         self.context.apply_settings()
         self.build()
 
@@ -239,8 +233,7 @@ class PhysicsScene(PanelScene):
             for rule in self.exhibit.rules:
                 start, end = view.points(rule).tolist()
                 canvas.line(tuple(start), tuple(end), FAINT)
-            asleep = self.exhibit.world.asleep[0]
-            self._outlines.draw(canvas, view, poses, self._lit(), held=self.grip is not None, asleep=asleep)
+            self._outlines.draw(canvas, view, poses, self._lit(), held=self.grip is not None)
             if self.contacts_drawn:
                 draw_contacts(canvas, view, self.exhibit.world, self._weight)
             for label in self.exhibit.labels():
@@ -250,15 +243,12 @@ class PhysicsScene(PanelScene):
             draw_grip(canvas, (x, y), self._mouse)
 
     def _write_legend(self, cursor: Cursor) -> None:
-        """Write whether time is stopped, or else how to take hold of a body, and what faint bodies and lines are."""
+        """Write whether time is stopped, or else how to take hold of a body, and what the lines of contacts are."""
         controls = self.context.controls
         keys = self.form.focused is self.room_row and not controls.mouse_in_use
         held = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
-        rows: list[tuple[str, Colour]] = [(texts.PHYSICS_STOPPED, INK) if self.playback.stopped else (held, HUMAN)]
-        if self.more and self.exhibit.world.asleep.any():
-            rows.append((texts.PHYSICS_ASLEEP, MUTE))
-        for words, colour in rows:
-            cursor.styled(words, SMALL, colour)
+        words, colour = (texts.PHYSICS_STOPPED, INK) if self.playback.stopped else (held, HUMAN)
+        cursor.styled(words, SMALL, colour)
         if self.contacts_drawn:
             line = cursor.in_style(SMALL)
             if cursor.canvas:

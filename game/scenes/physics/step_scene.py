@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import partial
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -11,11 +11,13 @@ import pygame
 
 from engine.vector import Array, right_of
 from game.core import texts
+from game.core.scene import Transition
 from game.core.source import source_of
 from game.drawing.canvas import Canvas, Point
-from game.drawing.cursor import Cursor
+from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.code_listing import draw_listing
+from game.explain.explained import Explained
 from game.input.controls import Command
 from game.scenes.physics.bodies import Outlines
 from game.scenes.physics.exhibit import Exhibit, Grip
@@ -26,7 +28,8 @@ from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from game.world.camera import View
 
-_PICTURE, _LISTING = 344.0, 400.0  # heights
+_PICTURE, _LISTING = 344.0, 400.0  # greatest heights
+_LOW: Final = 0.42  # of its width, the picture's height in a narrow window
 _LEAST: Final = 420.0  # width of a column
 _SHARE: Final = 0.42  # of the picture's height that the two bodies fill
 _WIDER: Final = 2.6  # how much more is shown where all boxes are
@@ -35,6 +38,16 @@ _ARROW: Final = 84.0  # points of the longest arrow
 _NORMAL: Final = 46.0  # points of a normal
 _HEAD: Final = 6.0
 _INSIDE: Final = 44.0  # points from a contact to the letter of a body that cannot move
+_APART: Final = 20.0  # between two words of the field
+_LINES, _ROWS = 2, 3  # of a sentence and of a legend, for which there is always room
+# By the kind of a piece, the words of the field that name what is shown.
+_TERMS: Final = {
+    "axes": ("axis",),
+    "contact": ("normal",),
+    "memory": ("impulse", "solver"),
+    "impulses": ("impulse", "normal", "friction", "solver"),
+}
+Scale = tuple[float, float]  # a round value, and how many points long it is drawn
 Legend = list[tuple[Colour, float, str]]  # colour and length in points of an arrow, and what it means
 
 
@@ -52,7 +65,7 @@ class PhysicsStepScene(PanelScene):
 
     def __init__(self, context: Context, exhibit: Exhibit, grip: Grip | None = None) -> None:
         super().__init__(context)
-        self.record = StepRecord(exhibit, grip)
+        self.record, self.explained = StepRecord(exhibit, grip), Explained()
         self._outlines, self.in_code = Outlines(self.record.exhibit.sprites), False
         self._follow(max(self.record.pairs, key=self._push, default=None))
         self.form.focus(self._slider)
@@ -67,15 +80,19 @@ class PhysicsStepScene(PanelScene):
         self._kinds = list(dict.fromkeys(piece.kind for piece in self.pieces))
         words, chosen = [texts.STEP_PIECES[kind][0] for kind in self._kinds], self._kinds.index(self.piece.kind)
         self._tabs = panel.choice("", words, chosen, self._turn_to_kind)
-        panel.text(lambda: self.record.sentence(self.piece, self.pair))
+        panel.add(self._write_sentence)
         last = len(self.pieces) - 1
         count = partial(_counted, last + 1)
         self._slider = panel.slider(texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1, figure=count)
         left, *right = panel.beside((1, 1) if self.in_code else (1,), least=_LEAST, apart=40.0)
-        left.picture(_PICTURE, self._draw_picture)
+        left.picture(lambda width: min(_PICTURE, _LOW * width), self._draw_picture)
         left.add(self._write_legend)
         for column in right:
             column.picture(_LISTING, self._draw_code)
+        panel.words([
+            *([(texts.STEP_OTHER, lambda: self._other_pair(1))] if len(self.record.pairs) > 1 else []),
+            (texts.STEP_CODE[self.in_code], self._show_code),
+        ])  # fmt: skip
 
     # What is chosen
 
@@ -108,16 +125,49 @@ class PhysicsStepScene(PanelScene):
         self.build()
 
     def actions(self) -> Table:
-        pairs = [
-            Action(Command.NEXT, lambda: self._other_pair(1), texts.HINT_NEXT_PAIR),
-            Action(Command.PREVIOUS, lambda: self._other_pair(-1)),
-        ]
         return [
             Action(Command.STEP, lambda: self._slider.set(self.place + 1), texts.HINT_NEXT_PIECE),
-            *(pairs if len(self.record.pairs) > 1 else []),
-            Action(Command.CHOICES, self._show_code, texts.STEP_CODE[self.in_code]),
+            *([self.explained.action()] if self._terms else []),
             self.form.goes_back(texts.HINT_BACK),
+            Action(Command.NEXT, lambda: self._other_pair(1)),
+            Action(Command.PREVIOUS, lambda: self._other_pair(-1)),
         ]
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        return None if self.explained.handle_event(event) else super().handle_event(event)
+
+    def update(self) -> Transition | None:
+        self.explained.update()
+        return super().update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        super().draw(canvas, alpha)
+        self.explained.draw(canvas)
+
+    # What is said
+
+    @property
+    def _terms(self) -> tuple[str, ...]:
+        return _TERMS.get(self.piece.kind, ())
+
+    def _write_sentence(self, cursor: Cursor) -> None:
+        """Write what happens, in plain words; what stands below stays where it is."""
+        below = cursor.y + _LINES * LEADING * TEXT
+        cursor.text(self.record.sentence(self.piece, self.pair))
+        cursor.y = max(cursor.y, below)
+        self._write_terms(cursor)
+
+    def _write_terms(self, cursor: Cursor) -> None:
+        """Write the field's words for what is shown, each explained to whoever points at it."""
+        if canvas := cursor.canvas:
+            x = cursor.left
+            for term in self._terms:
+                word, meaning = texts.STEP_TERMS[term]
+                box = canvas.text(word, (x, cursor.in_style(SMALL).baseline), size=SMALL, colour=NET)
+                canvas.line((box.left, box.bottom), (box.right, box.bottom), NET, 1, 0.5)
+                canvas.explain(box, meaning)
+                x = box.right + _APART
+        cursor.gap(LEADING * SMALL + 4)
 
     # The code
 
@@ -136,7 +186,7 @@ class PhysicsStepScene(PanelScene):
         poses = record.after[0] if kind in ("motion", "end") else record.before[0]
         with canvas.clipped(box):
             self._draw_walls(canvas, view)
-            self._outlines.draw(canvas, view, poses, None, held=False)
+            self._outlines.draw(canvas, view, poses)
             if kind == "boxes":
                 self._draw_boxes(canvas, view)
             if pair is None:
@@ -151,9 +201,9 @@ class PhysicsStepScene(PanelScene):
                     (x, y), (right, up) = view.points(self._middle(pair)).tolist(), way.tolist()
                     x, y = x + _INSIDE * right, y - _INSIDE * up
                 canvas.text(letter, (x - 14, y + 5), size=TEXT, colour=INK, align="centre")
-            if self.piece.impulse and (scale := self._impulse_scale(self.piece.impulse)):
+            if self.piece.impulse and (scale := self._impulses):
                 self._draw_impulse(canvas, view, self.piece.impulse, pair, scale)
-            if (motion := record.motion(self.piece, pair)) and (scale := self._motion_scale(pair)):
+            if (motion := record.motion(self.piece, pair)) and (scale := self._motions):
                 for which, body in enumerate(pair.bodies):
                     for velocity, colour, width in zip(motion, (MUTE, INK), (3, 1.5), strict=True):
                         if record.can_move(body):
@@ -217,9 +267,7 @@ class PhysicsStepScene(PanelScene):
         middle: Array = contacts.points[pair.contact][contacts.valid[pair.contact]].mean(axis=0)
         return middle
 
-    def _draw_impulse(
-        self, canvas: Canvas, view: View, impulse: Impulse, pair: Pair, scale: tuple[float, float]
-    ) -> None:
+    def _draw_impulse(self, canvas: Canvas, view: View, impulse: Impulse, pair: Pair, scale: Scale) -> None:
         """Draw the accumulated impulses on B, or on A if B cannot move."""
         contacts, row = self.record.contacts, impulse.contact
         assert contacts is not None
@@ -229,46 +277,50 @@ class PhysicsStepScene(PanelScene):
             _arrow_from(canvas, view, contacts.points[row, number], contacts.normal[row] * parts[number], NET)
         _arrow_from(canvas, view, self._middle(pair), right_of(contacts.normal[row]) * parts[2], NET)
 
-    # Scales, one for all pieces of a kind
+    # Scales: of impulses one for the whole step, of velocities one for all pieces of a pair
 
-    def _impulse_scale(self, impulse: Impulse) -> tuple[float, float] | None:
-        return _scale([each.after for each in self.record.impulses if each.contact == impulse.contact])
+    @cached_property
+    def _impulses(self) -> Scale | None:
+        return _scale([each.after for each in self.record.impulses])
 
-    def _motion_scale(self, pair: Pair) -> tuple[float, float] | None:
-        record, bodies = self.record, list(pair.bodies)
+    @property
+    def _motions(self) -> Scale | None:
+        record, bodies = self.record, list(self.pair.bodies) if self.pair else []
         every = [each[bodies, :2] for each in (record.before[1], record.fallen, record.warm, record.after[1])]
-        return _scale([np.hypot(*each.T) for each in every])
+        return _scale([np.hypot(*each.T) for each in every if len(each)])
 
     def _legend(self) -> Legend:
         if self.pair is None:
             return []
         legend: Legend = []
-        if self.piece.impulse and (scale := self._impulse_scale(self.piece.impulse)):
+        if self.piece.impulse and (scale := self._impulses):
             on = "B" if self.record.can_move(self.pair.bodies[1]) else "A"
             legend.append((NET, scale[1], texts.STEP_SCALE["impulse"].format(size=written(scale[0]), body=on)))
-        if self.record.motion(self.piece, self.pair) and (scale := self._motion_scale(self.pair)):
+        if self.record.motion(self.piece, self.pair) and (scale := self._motions):
             legend.append((MUTE, scale[1], texts.STEP_SCALE["before"].format(size=written(scale[0]))))
             legend.append((INK, 24.0, texts.STEP_SCALE["after"]))
         return legend
 
     def _write_legend(self, cursor: Cursor) -> None:
+        below = cursor.y + _ROWS * LEADING * SMALL
         for colour, length, words in self._legend():
             if cursor.canvas:
                 y = cursor.in_style(SMALL).baseline - 4
                 _arrow(cursor.canvas, (cursor.left, y), (cursor.left + length, y), colour, 2)
             cursor.styled(words, SMALL, MUTE, indent=_ARROW + 12)
+        cursor.y = max(cursor.y, below)
 
 
 def _counted(total: int, place: float) -> str:
     return texts.STEP_PLACE.format(count=place + 1, total=total)
 
 
-def _scale(values: list[Array]) -> tuple[float, float] | None:
+def _scale(values: list[Array]) -> Scale | None:
     """Return a round number up to the greatest of some values, and how long it is drawn, so that that has full length.
 
-    None if all are next to nothing.
+    None if all are next to nothing, or there are none.
     """
-    most = max(float(np.abs(each).max()) for each in values)
+    most = max((float(np.abs(each).max()) for each in values), default=0.0)
     if most < 1e-4:
         return None
     power = 10.0 ** math.floor(math.log10(most))

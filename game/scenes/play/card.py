@@ -118,7 +118,7 @@ class ShownCard:
                     _draw_ring(rows.canvas, last)
                 draw_lamps(rows.canvas, last, card.medal)
             small.pair(texts.CARD_SCORE, card.score, HUMAN)
-        for words, figure in card.compared:
+        for words, figure in card.compared.items():
             small.pair(words, figure, INK)
         rows.y = small.y
 

@@ -1,4 +1,4 @@
-"""Challenges: what a flight is flown as. Each is a start, rules, and words, which one scene reads.
+"""Challenges: what a flight is flown as. Each is a start, rules, words, and two hooks, which one scene reads.
 
 Here are the base, and the short ones: races against ghosts, flying on from a replay, and missions.
 """
@@ -6,27 +6,23 @@ Here are the base, and the short ones: races against ghosts, flying on from a re
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.flights.recording import AS_IT_IS
+from ai.flights.recording import AS_IT_IS, Easing, Recording
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
 from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
 from game.core.catalogue import capital
-from game.core.settings import Settings
-from game.flight import sharing
-from game.flight.choosers import Alone, Crew
-from game.flight.credit import Credit
-from game.flight.flight import Flight, Recording, begin
-from game.flight.flight_file import Entry, Record
-from game.flight.networks import Network, Policy, titled, who
+from game.flight.choosers import Alone
+from game.flight.flight import Flight
+from game.flight.flight_file import Record
+from game.flight.networks import Policy, who
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, flown_elsewhere, replayed
-from game.input.controls import Controls
 from game.scenes.play.ghost import Ghost, Named
 
 if TYPE_CHECKING:
@@ -37,221 +33,214 @@ if TYPE_CHECKING:
 _AFTER_OUTAGE: Final = 2.0  # seconds after an engine failure in which the speed that it left can't be braked
 
 
-class Challenge:
-    """What a flight is flown as.
+@dataclass(frozen=True)
+class Wanted:
+    """What a flight is to begin with.
 
     Attributes:
-        name: name of a mission in the logbook; empty for other courses.
-        title, line: its name, for the corner.
-        goal: its goal, for the corner as well.
-        opening: text while the craft hangs and waits; empty to leave the middle free.
+        seed: of the start.
+        network: the one to hand over to, and to help.
+        spawn: kind of start, where there are several; empty for the player's own.
+        easing: what the player has chosen to make flights easier.
+
+    """
+
+    seed: int
+    network: Policy | None = None
+    spawn: str = ""
+    easing: Easing = AS_IT_IS
+
+
+@dataclass(frozen=True)
+class Start:
+    """How a flight begins.
+
+    Attributes:
+        recording: where it begins, and under which rules.
+        ghost: what flies beside it; None without one.
+        shares: whether the network may share the stick, and not only take it.
+        place: puts the craft elsewhere than the recording says; None to leave it there.
+        ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
+
+    """
+
+    recording: Recording
+    ghost: Ghost | None = None
+    shares: bool = True
+    place: Callable[[Flight[Any]], None] | None = None
+    ahead: Ground | None = None
+
+
+@dataclass
+class Rules:
+    """What a flight may do and what counts; a challenge may change them as it goes on.
+
+    Attributes:
         free: whether it is a free flight, for which pads and start can be chosen.
         fixed: whether there is only one start.
         kept: whether its flights are recorded in the logbook.
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
         alone: whether the network may neither help nor take over.
         eases: whether the player's easing applies to its flights.
-        easing: the easing of its next flight.
         guides: whether the network's path is previewed.
         elsewhere: whether it is flown where it is not as on the moon.
         compares: whether the card compares the flight with the ghost's.
         shadows: whether the network flies the same start unseen, so that the card tells its score.
+        waits: whether the craft hangs until the pilot touches a control; otherwise, only until all are released.
+        holds: whether the craft goes on to hang, although it is touched, until help is turned on.
+        keeps_stick: whether the player cannot hand over the stick now.
+        again: whether a finished flight restarts by itself, without a card.
         through: whether it is finished and free flights follow.
-        total: points of the chain of flights that it is, for the logbook.
-        ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
-        stake: question before another start, and what would be lost, while that is more than the present flight.
-        eased_line: what is said before a flight that assists will set apart; empty for no more than their names.
-        copy_hint: hint of the key that copies the text for a friend; empty for the usual words.
-        next_hint: hint of the key for what comes next; empty where it does nothing.
-        again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
+        staked: whether another start would lose more than the present flight.
+        mission: whose medals can be won; None without.
+        following: makes the challenge that comes after a landing; None for the way back.
+        skip: what the key for what comes next does before another flight begins; None for nothing.
 
     """
 
-    name = title = line = goal = opening = eased_line = bar = copy_hint = next_hint = again_hint = new_hint = ""
-    free = alone = eases = guides = elsewhere = shadows = through = False
-    fixed = kept = compares = True
-    easing = AS_IT_IS
-    total = 0
-    ahead: Ground | None = None
-    stake: tuple[str, str] | None = None
-    _help: Settings | None = None
+    free: bool = False
+    fixed: bool = True
+    kept: bool = True
+    bar: str = ""
+    alone: bool = False
+    eases: bool = False
+    guides: bool = False
+    elsewhere: bool = False
+    compares: bool = True
+    shadows: bool = False
+    waits: bool = True
+    holds: bool = False
+    keeps_stick: bool = False
+    again: bool = False
+    through: bool = False
+    staked: bool = False
+    mission: Mission | None = None
+    following: Callable[[], Challenge] | None = None
+    skip: Callable[[], None] | None = None
 
-    def word(self) -> None:
-        """Set its texts, at first and whenever the language has changed."""
 
-    # Before a flight
+@dataclass(frozen=True)
+class Words:
+    """What is said of a flight, in the player's language, at this moment.
 
-    def recall(self, entries: Iterable[Entry]) -> None:
-        """Take what is known of earlier flights, before the first begins."""
+    Attributes:
+        title, line: its kind and name, for the corner.
+        goal: its goal, for the corner as well.
+        opening: text while the craft hangs and waits; empty to leave the middle free.
+        sentence: the one sentence of the flight; None for the usual one.
+        asides: what else is to be read while the craft waits.
+        eased: what is said before a flight that assists will set apart; empty for no more than their names.
+        copy: hint of the key that copies the text for a friend.
+        next: hint of the key for what comes next; empty where it does nothing.
+        again, new: what the card calls another try, and another start; empty for the usual words.
+        stake: question before another start, and what would be lost.
+        result: what is copied for a friend in place of the flight's code; empty for the code.
+        marks: draws the challenge's own text and marks over the world; None for none.
+        card: adds to the card of a flight that has ended what is to be said; None for nothing.
 
-    def chosen(self) -> Hashable:
-        """Return what the player has chosen for its next flight."""
-        return None
+    """
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
-        """Begin a flight, of the kind of start `spawn` if there are several; `network` is the one to hand over to."""
-        return begin(Recording(seed, "random"), network)
+    title: str = ""
+    line: str = ""
+    goal: str = ""
+    opening: str = ""
+    sentence: str | None = None
+    asides: Sequence[str] = ()
+    eased: str = ""
+    copy: str = ""
+    next: str = ""
+    again: str = ""
+    new: str = ""
+    stake: tuple[str, str] = ("", "")
+    result: str = ""
+    marks: Callable[[Canvas, View, float], None] | None = None
+    card: Callable[[OutcomeCard], None] | None = None
 
-    def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
-        """Begin the ghost that flies beside it; None without one."""
-        return None
 
-    def dial(self, settings: Settings) -> Settings:
-        """Return the settings of help for this challenge alone: it begins without, whatever free flights have."""
-        self._help = self._help or replace(settings, help="off")
-        return self._help
+class Challenge:
+    """What a flight is flown as.
 
-    # In flight
+    Attributes:
+        name: its name in the logbook; empty for flights of no course.
+        rules: what its flights may do, and what counts.
 
-    @property
-    def waits(self) -> bool:
-        """Whether the craft hangs until the pilot touches a control; otherwise, only until all are released."""
-        return True
+    """
 
-    @property
-    def holds(self) -> bool:
-        """Whether the craft goes on to hang, although it is touched."""
-        return False
+    name = ""
 
-    def keeps_stick(self, flight: Flight[Crew]) -> bool:
-        """Whether the player cannot hand over the stick now."""
-        return False
+    def __init__(self, **rules: Any) -> None:
+        self.rules = Rules(**rules)
 
-    def follow(self, flight: Flight[Crew]) -> str:
-        """Follow a step of the flight; return the name of a sound to play, empty for none."""
+    def start(self, wanted: Wanted) -> Start:
+        """Return how the next flight begins."""
+        return Start(Recording(wanted.seed, wanted.spawn or "random"))
+
+    def words(self, flown: FlownFlight) -> Words:
+        """Return what is said of a flight now."""
+        return Words()
+
+    def stepped(self, flown: FlownFlight) -> str:
+        """Follow a step of the flight, also after its end; return the name of a sound to play, empty for none."""
         return ""
 
-    def remember(self, settings: Settings) -> bool:
-        """Store the pilot's progress in the settings; return whether there was any to store."""
-        return False
-
-    def titles(self, flight: Flight[Crew], network: Network, *, whole: bool) -> tuple[str, str]:
-        """Return the kind of a flight, and its name; `whole` is for all that can be said of it."""
-        named = whole and flight.chooser.network and self.elsewhere
-        flown = texts.WITH_NETWORK.format(network=titled(network.name)) if named else ""
-        return texts.DIAL_JOIN.join(filter(None, (self.title, flown))), self.line
-
-    def sentence(self, flight: Flight[Crew], controls: Controls, *, waiting: bool, stuck: bool) -> str | None:
-        """Return the one sentence of the flight, in the player's keys; None for the usual one.
-
-        `waiting` is whether the craft hangs until a control is touched, `stuck` whether one must first be let go.
-        """
-        return None
-
-    def asides(self, flight: Flight[Crew]) -> Sequence[str]:
-        """Return what else is to be read while the craft waits."""
-        return ()
-
-    def draw(self, canvas: Canvas, view: View, flown: FlownFlight, alpha: float) -> None:
-        """Draw the challenge's own text and marks over the world."""
-
-    # After a flight
-
-    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
-        """Take note of a flight that has just ended, before its card or the next flight."""
-
-    def again(self) -> bool:
-        """Whether a finished flight restarts by itself, without a card."""
-        return False
-
-    def medal(self, flight: Flight[Crew]) -> int:
-        """Return the medal of a finished flight if it counts: 3 for gold, 2 silver, 1 bronze, 0 none."""
-        return 0
-
-    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
-        """Return the outcome card of a finished flight, with what this challenge adds to it."""
-        return card
-
-    def written(self, entry: Entry) -> str:
-        """Take note of the logbook's line of a finished flight; return what went wrong, empty if nothing did."""
-        return ""
-
-    def message(self, record: Record) -> tuple[str, str]:
-        """Return the text for a friend about a flight that is over, and the note for the player about it."""
-        code = sharing.code(record)
-        return code, texts.CODE_COPIED
-
-    def following(self) -> Challenge | None:
-        """Return the challenge that comes next after a landing; None for the way back."""
-        return None
-
-    def skip(self) -> None:
-        """Skip to the next part of the challenge, if there is one."""
-
-    def leave(self) -> None:
-        """Leave the challenge for free flights."""
+    def ended(self, flown: FlownFlight) -> None:
+        """Take note of a flight that has just ended, and have it kept."""
+        flown.keep()
 
 
-class _Beside(Challenge):
-    """A flight beside a rival's ghost, called by its name."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self.word()
-
-    def word(self) -> None:
-        self.title, self.line = texts.RACE, texts.DUEL_RIVAL.format(name=self._name)
-        self.opening = texts.DUEL_BEGIN.format(name=self._name)
-
-
-class Duel(_Beside):
-    """Duel: one start after another against a rival."""
-
-    fixed = False
+class Duel(Challenge):
+    """Duel: one start after another against a rival's ghost, called by its name."""
 
     def __init__(self, rival: Policy, name: str) -> None:
-        super().__init__(name)
-        self._rival = rival
+        super().__init__(fixed=False)
+        self._rival, self._name = rival, name
 
-    def word(self) -> None:
-        super().word()
-        self.title = texts.DUEL
+    def start(self, wanted: Wanted) -> Start:
+        recording = Recording(wanted.seed, "random")
+        return Start(recording, Ghost(Flight(recording, Alone(self._rival)), self._name))
 
-    def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        return Ghost(Flight(Recording(seed, "random"), Alone(self._rival)), self._name)
+    def words(self, flown: FlownFlight) -> Words:
+        return _beside(texts.DUEL, self._name)
 
 
-class Race(_Beside):
+class Race(Challenge):
     """Race: the start of a recorded flight, against its ghost."""
 
     def __init__(self, record: Record, name: str) -> None:
-        super().__init__(name)
-        self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
+        super().__init__(elsewhere=flown_elsewhere(record.recording))
+        self._recording, self._name = record.recording, name
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
-        return begin(self._recording, network)
+    def start(self, wanted: Wanted) -> Start:
+        return Start(self._recording, Ghost(replayed(self._recording), self._name))
 
-    def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        return Ghost(replayed(self._recording), self._name)
+    def words(self, flown: FlownFlight) -> Words:
+        return _beside(texts.RACE, self._name)
+
+
+def _beside(title: str, rival: str) -> Words:
+    """Return the words of a flight beside a rival's."""
+    return Words(title, texts.DUEL_RIVAL.format(name=rival), opening=texts.DUEL_BEGIN.format(name=rival))
 
 
 class ContinuedFlight(Challenge):
     """Fly on from a moment of a recorded flight, whose own continuation flies beside as a ghost."""
 
-    bar = "flown_on"
-
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
-        self.elsewhere = flown_elsewhere(self._recording)
+        super().__init__(bar="flown_on", elsewhere=flown_elsewhere(self._recording))
         self.name = self._recording.mission or flight_replay.record.entry.course
-        self.word()
 
-    def word(self) -> None:
-        self.title, self.opening = texts.FLY_ON, texts.FLY_ON_BEGIN
-        self.line = texts.FLY_ON_LINE.format(seconds=self._step / 60)
+    def words(self, flown: FlownFlight) -> Words:
+        line = texts.FLY_ON_LINE.format(seconds=self._step / 60)
+        return Words(texts.FLY_ON, line, opening=texts.FLY_ON_BEGIN)
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
-        flight = begin(self._recording, network)
-        self._put(flight)
-        return flight
+    def start(self, wanted: Wanted) -> Start:
+        beside = replayed(self._recording)
+        self._place(beside)
+        return Start(self._recording, Ghost(beside, self._name), place=self._place)
 
-    def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        flight = replayed(self._recording)
-        self._put(flight)
-        return Ghost(flight, self._name)
-
-    def _put(self, flight: Flight[Any]) -> None:
+    def _place(self, flight: Flight[Any]) -> None:
         flight.put(self._moment, self._recording, self._step)
 
 
@@ -261,8 +250,6 @@ class FlownMission(Challenge):
     `following` makes the mission that comes next, where there is one and the way to it is known.
     """
 
-    eases = True
-
     def __init__(
         self,
         mission: Mission,
@@ -270,59 +257,52 @@ class FlownMission(Challenge):
         rival_name: Named = "",
         following: Callable[[], Challenge] | None = None,
     ) -> None:
-        self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
-        self._following = following
+        super().__init__(eases=True, elsewhere=mission.elsewhere, mission=mission, following=following)
+        self.mission, self.name = mission, mission.name
         self._rival, self._rival_name = rival.recording if rival else None, rival_name
         self._landed = False
-        self.word()
 
-    def word(self) -> None:
-        self.title = texts.MISSION
-        self.line, self.opening = texts.MISSIONS[self.name]
-        self.goal = texts.MISSION_GOAL.format(fuel=self.mission.gold[0], seconds=self.mission.gold[1])
-        self.new_hint = texts.MISSION_NEXT if self._following else ""
-        if self._landed:
-            self.again_hint = texts.MISSION_AGAIN
+    def words(self, flown: FlownFlight) -> Words:
+        line, opening = texts.MISSIONS[self.name]
+        goal = texts.MISSION_GOAL.format(fuel=self.mission.gold[0], seconds=self.mission.gold[1])
+        again = texts.MISSION_AGAIN if self._landed else ""
+        new = texts.MISSION_NEXT if self.rules.following else ""
+        return Words(texts.MISSION, line, goal, opening, again=again, new=new, card=partial(self._add_to, flown))
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
-        return begin(Recording(seed, "random", mission=self.name, easing=self.easing), network)
+    def start(self, wanted: Wanted) -> Start:
+        recording = Recording(wanted.seed, "random", mission=self.name, easing=wanted.easing)
+        return Start(recording, self._ghost(replace(recording, easing=AS_IT_IS), wanted.network))
 
-    def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
+    def _ghost(self, start: Recording, network: Policy | None) -> Ghost | None:
         if self._rival:
             return Ghost(replayed(self._rival), self._rival_name)
-        start = Recording(seed, "random", mission=self.name)
         return Ghost(Flight(start, Alone(network)), partial(who, network)) if network else None
 
-    def following(self) -> Challenge | None:
-        return self._following() if self._following else None
-
-    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
+    def ended(self, flown: FlownFlight) -> None:
         """Keep a landing as the ghost of the next try."""
-        if flight.outcome is Outcome.LANDED and flight.share > 0:
-            self._rival, self._rival_name, self._landed = flight.recording, lambda: texts.GHOST_BEFORE, True
-            self.word()
+        flown.keep()
+        if flown.flight.outcome is Outcome.LANDED and flown.flight.share > 0:
+            self._rival, self._rival_name, self._landed = flown.flight.recording, lambda: texts.GHOST_BEFORE, True
 
-    def medal(self, flight: Flight[Crew]) -> int:
-        if flight.outcome is not Outcome.LANDED:
-            return 0
-        return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
-
-    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
-        """Return the card with the medal beside the points, and what the next medal asks, or why there is none."""
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
+        """Say what the next medal asks, or why there is none."""
+        flight, credit = flown.flight, flown.credit
         if not card.good:
-            return replace(card, advice=_advice(flight.env) or card.advice)
+            card.advice = _advice(flight.env) or card.advice
+            return
         if not credit.counts and credit.bar == "assists":
-            return card
+            return
         earned = texts.MISSION_TOGETHER if credit.together else texts.MEDALS[credit.medal]
-        card = replace(card, score=texts.DIAL_JOIN.join(filter(None, (card.score, earned))), ring=credit.together)
-        return replace(card, medal=credit.medal, reason=self._missing(flight)) if credit.counts else card
+        card.score = texts.DIAL_JOIN.join(filter(None, (card.score, earned)))
+        card.ring, card.medal = credit.together, credit.medal
+        if credit.counts:
+            card.reason = self._missing(flight.env, credit.medal)
 
-    def _missing(self, flight: Flight[Crew]) -> str:
+    def _missing(self, env: LanderEnv, medal: int) -> str:
         """Return what the next medal asks."""
-        medal = self.medal(flight)
         if medal == 3:
             return texts.MEDAL_GOLD
-        much = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
+        much = self.mission.too_much(medal + 1, float(env.fuel[0]), float(env.time[0]))
         named = zip(much, (texts.MEDAL_LESS_FUEL, texts.MEDAL_LESS_TIME), strict=True)
         less = texts.AND.join(text.format(each) for each, text in named if each > 0)
         return texts.MEDAL_NEXT.format(medal=capital(texts.MEDALS[medal + 1]), less=less)

@@ -7,7 +7,6 @@ as the player's own. After a run its own flights are the ghosts of the next try 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -22,15 +21,12 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
-from game.flight.choosers import Alone, Crew
-from game.flight.credit import Credit
-from game.flight.flight import Flight, Recording, begin
-from game.flight.flight_file import Entry
-from game.flight.logbook import best_descent
+from game.flight.choosers import Alone
+from game.flight.flight import Flight, Recording
 from game.flight.networks import Policy, sentence, who
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import replayed
-from game.scenes.play.challenge import Challenge
+from game.scenes.play.challenge import Challenge, Start, Wanted, Words
 from game.scenes.play.ghost import Ghost
 from game.world.camera import ClearArea, View
 
@@ -51,7 +47,7 @@ class Descent(Challenge):
     """One run after another.
 
     Attributes:
-        start: where the present leg begins.
+        begins: where the present leg begins.
         legs: how many legs the run has landed.
         streak: landings in a row by the player's own hands.
         best: legs and points of the player's best run before this one.
@@ -59,35 +55,32 @@ class Descent(Challenge):
     """
 
     name = DESCENT
-    fixed = compares = False
 
-    def __init__(self) -> None:
-        self.best, self._seed = (0, 0), -1
+    def __init__(self, best: tuple[int, int] = (0, 0)) -> None:
+        super().__init__(compares=False)
+        self.best, self._seed = best, -1
         self._flown: list[Recording] = []
         self._before: list[Recording] = []  # an earlier run over the same ground
         self._clear()
 
     def _clear(self) -> None:
-        self.start = self._next = LegStart()
+        self.begins = self._next = LegStart()
         self.legs = self.total = self.streak = 0
-        self.bar, self._landed, self._counts = "", False, True
+        self.rules.bar, self._landed, self._counts = "", False, True
         self._points, self._gained, self._since = 0, 0.0, 0
         self._relief = ""  # who flew the last leg in the player's place
 
-    def recall(self, entries: Iterable[Entry]) -> None:
-        self.best = max(self.best, best_descent(entries))
-
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
+    def start(self, wanted: Wanted) -> Start:
         """Begin the next leg after a landing; otherwise begin a run."""
+        seed = wanted.seed
         if seed != self._seed or not self._landed:
             self._start_run(seed)
-        self.start, self._landed, self._since = self._next, False, 0
-        lost = texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)
-        self.stake = lost if self.legs else None
+        self.begins, self._landed, self._since = self._next, False, 0
+        self.rules.again, self.rules.staked = False, self.legs > 0
+        recording = Recording(seed, "random", leg=self.begins)
         # The ground of the next leg, as it will be unless this one ends on a flat spot.
-        self.ahead = leg_of(seed, LegStart(self.start.number + 1)).ground
-        self.word()
-        return begin(Recording(seed, "random", leg=self.start), network)
+        ahead = leg_of(seed, LegStart(self.begins.number + 1)).ground
+        return Start(recording, self._ghost(recording, wanted.network), ahead=ahead)
 
     def _start_run(self, seed: int) -> None:
         """Begin a run; over the same ground as the last one, beside the longest so far."""
@@ -98,75 +91,78 @@ class Descent(Challenge):
         self._seed = seed
         self._clear()
 
-    def word(self) -> None:
-        self.title, self.again_hint, self.new_hint = texts.DESCENT_TITLE, texts.DESCENT_AGAIN, texts.DESCENT_NEW
-        leg = leg_of(self._seed, self.start)
-        kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg.kinds)
-        self.line = texts.DESCENT_LEG.format(number=self.start.number, kinds=kinds)
-        words = [texts.DESCENT_POINTS.format(count=self.total)]
-        if self.streak > 1:
-            words.append(texts.DESCENT_STREAK.format(factor=min(self.streak, _MOST)))
-        if self.best[0]:
-            words.append(texts.DESCENT_BEST.format(count=self.best[0]))
-        self.goal = texts.DIAL_JOIN.join(words)
-        if self.start.number == 1:
-            self.opening = texts.DESCENT_BEGIN
-        elif any(pad.bare and pad.factor for pad in leg.ground.pads):
-            self.opening = texts.DESCENT_SPOT
-        else:
-            self.opening = texts.DESCENT_HINTS[leg.kinds[-1]]
-
-    def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
-        """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
-        number = self.start.number
+    def _ghost(self, start: Recording, network: Policy | None) -> Ghost | None:
+        """Return the ghost: the player's earlier flight of this leg or, without one, the network."""
+        number = self.begins.number
         if number <= len(self._before):
             return Ghost(replayed(self._before[number - 1]), lambda: texts.GHOST_BEFORE)
-        start = Recording(seed, "random", leg=self.start)
         return Ghost(Flight(start, Alone(network)), partial(who, network)) if network else None
 
-    def note_end(self, flight: Flight[Crew], credit: Credit) -> None:
-        """Count a finished leg: points, the row of landings, and what it brings into the tank."""
-        env = flight.env
-        self._flown.append(flight.recording)
-        self._landed = flight.outcome is Outcome.LANDED
-        own = flight.share == 1.0
-        self._counts &= credit.counts
-        self.bar = self.bar if own else "relieved"
-        if not self._landed:
-            self.stake = None
-            return
-        spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
-        self.streak = self.streak + 1 if own else 0
-        self._relief = credit.who
-        self._points = score * min(self.streak, _MOST)
-        self.total += self._points
-        self.legs = self.start.number
-        self._next = self.start.after(float(env.fuel[0]), score, bare=spot.bare)
-        self._gained = max(0.0, self._next.tank - max(0.0, self.start.tank - float(env.fuel[0])))
-        self.ahead = leg_of(self._seed, self._next).ground
-        self.word()
+    def words(self, flown: FlownFlight) -> Words:
+        leg = leg_of(self._seed, self.begins)
+        kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg.kinds)
+        goal = [texts.DESCENT_POINTS.format(count=self.total)]
+        if self.streak > 1:
+            goal.append(texts.DESCENT_STREAK.format(factor=min(self.streak, _MOST)))
+        if self.best[0]:
+            goal.append(texts.DESCENT_BEST.format(count=self.best[0]))
+        spot = any(pad.bare and pad.factor for pad in leg.ground.pads)
+        hint = texts.DESCENT_SPOT if spot else texts.DESCENT_HINTS[leg.kinds[-1]]
+        return Words(
+            texts.DESCENT_TITLE, texts.DESCENT_LEG.format(number=self.begins.number, kinds=kinds),
+            texts.DIAL_JOIN.join(goal), texts.DESCENT_BEGIN if self.begins.number == 1 else hint,
+            again=texts.DESCENT_AGAIN, new=texts.DESCENT_NEW,
+            marks=partial(self._draw, flown), card=partial(self._add_to, flown),
+            stake=(texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)),
+        )  # fmt: skip
 
-    def again(self) -> bool:
-        """The next leg follows after every landing."""
-        return self._landed
-
-    def follow(self, flight: Flight[Crew]) -> str:
+    def stepped(self, flown: FlownFlight) -> str:
         """Let the tank fill once the craft has landed."""
-        self._since += flight.over
+        self._since += flown.flight.over
         return ""
 
-    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
+    def ended(self, flown: FlownFlight) -> None:
+        """Count a finished leg: points, the row of landings, and what it brings into the tank; or end the run."""
+        flight = flown.flight
+        self._flown.append(flight.recording)
+        self._landed = self.rules.again = flight.outcome is Outcome.LANDED  # then the next leg follows
+        self._counts &= flown.credit.counts
+        own = flown.credit.own
+        self.rules.bar = self.rules.bar if own else "relieved"
+        if self._landed:
+            self._count(flown, own=own)
+        self.rules.staked &= self._landed
+        flown.keep(self.total)
+
+    def _count(self, flown: FlownFlight, *, own: bool) -> None:
+        env = flown.flight.env
+        spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
+        self.streak = self.streak + 1 if own else 0
+        self._relief = flown.credit.who
+        self._points = score * min(self.streak, _MOST)
+        self.total += self._points
+        self.legs = self.begins.number
+        self._next = self.begins.after(float(env.fuel[0]), score, bare=spot.bare)
+        self._gained = max(0.0, self._next.tank - max(0.0, self.begins.tank - float(env.fuel[0])))
+        flown.ahead = leg_of(self._seed, self._next).ground
+
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
+        """Say how far the run has come."""
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
         values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
-        figures = tuple((label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True))
-        advice = texts.DESCENT_NEW_BEST if best else credit.barred if self.bar else card.advice
-        if float(flight.env.fuel[0]) >= flight.env.conditions.tank:
-            advice = texts.DESCENT_EMPTY
-        return replace(card, figures=figures, score="", advice=advice)
+        card.figures = tuple(
+            (label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True)
+        )
+        card.score = ""
+        env = flown.flight.env
+        if float(env.fuel[0]) >= env.conditions.tank:
+            card.advice = texts.DESCENT_EMPTY
+        elif best or self.rules.bar:
+            card.advice = texts.DESCENT_NEW_BEST if best else flown.credit.barred
 
     # The picture
 
-    def draw(self, canvas: Canvas, view: View, flown: FlownFlight, alpha: float) -> None:
+    def _draw(self, flown: FlownFlight, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw the mark of the goal and, on the ground, what the landing has brought."""
         flight, calm = flown.flight, flown.scenery.calm
         if not flight.over:
@@ -174,7 +170,7 @@ class Descent(Challenge):
         elif self._landed:
             craft = view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
             self._draw_landing(canvas, craft, 1.0 if calm else min(1.0, self._since / _FILLS))
-        if flown.waiting and self.start.number > 1 and not calm and flown.age < _FADES:
+        if flown.waiting and self.begins.number > 1 and not calm and flown.age < _FADES:
             # Two fills in place take half as long as a translucent picture of the whole window.
             dark = 1 - flown.age / _FADES
             canvas.surface.fill([round(255 * (1 - dark))] * 3, special_flags=pygame.BLEND_RGB_MULT)

@@ -21,6 +21,7 @@ from game.world.paths import draw_faint
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
+_RETRACED: Final = 60  # steps in which the path is drawn once more
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 _STRIDE: Final = 4  # steps between points of a path
 _MOST_MARKS: Final = 24
@@ -56,6 +57,12 @@ class FlightEnding:
         if since <= 0:
             return 0.0
         return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
+
+    @property
+    def retraced(self) -> float:
+        """How much of the path is drawn, 0 to 1: once the card is there, it is flown once more in a second."""
+        since = self._since - _CARD_AFTER
+        return 1.0 if self.calm or since <= 0 else min(1.0, since / _RETRACED)
 
     @property
     def shot(self) -> CameraTarget | None:
@@ -105,14 +112,22 @@ class FlownPath:
 
         return min(PLACES, key=hidden)
 
-    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles]) -> None:
-        """Draw the path, and a diamond where the co-pilot stepped in, below the head; some of many."""
-        pixels, ends = view.pixels(self.places), [0]
+    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles], share: float = 1.0) -> None:
+        """Draw that share of the path, and a diamond where the co-pilot stepped in, below the head; some of many."""
+        count = max(2, round(share * len(self._points)))
+        pixels, ends = view.pixels(self.places[:count]), [0]
         for _, run in groupby(self._hands):
             ends.append(ends[-1] + len(list(run)))
-        for start, end in pairwise(ends):
+        for start, end in pairwise(min(each, count - 1) for each in ends):
+            if start == end:
+                break
             colour = HUMAN if self._hands[start] is StickHolder.HUMAN else NET
             draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * ClearArea.head)
+        if share < 1:
+            x, y = view.points(self.places[count - 1]).tolist()
+            canvas.glow((x, y), 16, HUMAN, 0.6)
+            canvas.dot((x, y), 3.5, HUMAN)
+            return
         for place in moments[:: max(1, -(-len(moments) // _MOST_MARKS))]:
             spot = view.points(place).tolist()
             if spot[1] > canvas.view.top + ClearArea.head:

@@ -5,30 +5,32 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import pygame
 
 from ai.environment import Doubles
+from ai.flights.recording import AS_IT_IS
 from ai.flights.verification import landing_score
 from ai.lander.push import KEYS, Push
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import TimeScale
+from game.core.settings import Settings
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
-from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
-from game.flight.choosers import Alone
+from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
+from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
-from game.flight.flight import Flight, StickHolder
+from game.flight.flight import Flight, StickHolder, begin
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
 from game.flight.logbook import Records
 from game.flight.networks import Network
 from game.flight.outcomes import OutcomeCard, outcome_card
-from game.scenes.play.challenge import Challenge
+from game.scenes.play.challenge import Challenge, Wanted
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.ending import FlightEnding, FlownPath
-from game.scenes.play.free import rung_of
 from game.scenes.play.head import Head
 from game.scenes.play.help import HelpWords
 from game.scenes.play.interventions import Interventions
@@ -47,57 +49,79 @@ _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _WAITING: Final = 196.0  # points at the head for the words over a craft that waits, before they are laid out
 _BELOW_HEAD: Final = 44.0  # and between the words and the craft
 _LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
+_CATCHES_UP: Final = 6  # steps of the network's own flight in a frame, once the player's is over
+_LONGEST: Final = 3600  # steps after which its flight counts as one that does not land
 _SEARCH: Final = 6  # decisions in a frame, in the search for what would have saved a lost flight
 _THINKS: Final = 2  # decisions of six futures that are flown in a frame
 
 
+class Happened(NamedTuple):
+    """What has happened in 1/60 s of a flight.
+
+    Attributes:
+        flown: whether a step was flown.
+        ended: whether the flight has ended with it.
+        retries: whether the next try begins now, without a card.
+
+    """
+
+    flown: bool = False
+    ended: bool = False
+    retries: bool = False
+
+
 class FlownFlight:
-    """One flight of the player's, made anew for every start; around every step, call `prepare` and `follow`.
+    """One flight of the player's, made anew for every start; call `step` in every 1/60 s.
 
     Args:
         context: the shared services.
-        seed: seed of the start.
+        records: the logbook.
         network: the one to hand over to, if it can be read; unused where the player must fly alone.
         challenge: its start and rules.
-        spawn: kind of start; empty for the player's own.
+        helped: the settings of help, the player's own or those of the challenge.
+        seed, spawn: of the start; `spawn` is empty for the player's own.
 
     Attributes:
-        context, challenge, network: as given, but that the network can be changed.
+        context, challenge, helped: as given.
+        network: as given, but that it can be changed.
         flight: the flight itself.
         credit: who flies it, and whether it counts as the player's own.
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
         record: the record of the flight once it is over; None before, and where none is kept.
-        helped: the settings of help, the player's own or those of the challenge.
         clear: the part of the screen in which to show the flight.
         futures: the six futures, once somebody has asked; None before.
+        ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
-        best: the score to beat in free flights, and the player's best from this start before; 0 for none.
         age: steps of 1/60 s since it was first shown, whether or not it flies.
 
     """
 
-    def __init__(self, context: Context, seed: int, network: Network, challenge: Challenge, spawn: str = "") -> None:
-        self.context, self._settings = context, context.settings
-        self.challenge, self.network = challenge, network
+    def __init__(
+        self, context: Context, records: Records, network: Network, challenge: Challenge, helped: Settings,
+        seed: int, spawn: str = "",
+    ) -> None:  # fmt: skip
+        self.context, self._settings, self._records = context, context.settings, records
+        self.challenge, self.network, self.helped = challenge, network, helped
         self.waiting = self._held_before = True
-        self.begun = self._was_over = False  # was: before its latest step
+        self.begun = False
         self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
         self.record: Record | None = None
-        self.best = (0, 0)
-        self._policy = None if challenge.alone else network.policy
-        if challenge.eases:
-            challenge.easing = eased(self._settings)
-        self.flight = challenge.flight(seed, self._policy, spawn)
-        self.credit = Credit(self.flight, self._settings, challenge)
-        self.helped = challenge.dial(self._settings)
+        rules = challenge.rules
+        self._policy = None if rules.alone else network.policy
+        easing = eased(self._settings) if rules.eases else AS_IT_IS
+        start = challenge.start(Wanted(seed, self._policy, spawn, easing))
+        self.flight = begin(start.recording, self._policy, shares=start.shares)
+        if start.place:
+            start.place(self.flight)
+        self.ghost, self.ahead = start.ghost, start.ahead
+        self.credit = Credit(self.flight, self._settings, rules)
         self.help_words, self.interventions = HelpWords(self.helped), Interventions()
         self.copilot_panel = CopilotPanel()
         self._help()
         self._last_chance: LastChance | None = None
         self.futures: SixFutures | None = None
-        self.ghost = challenge.ghost(seed, self._policy)
         calm = self._settings.reduced_motion
         self.clear, self._earth = ClearArea(), EARTH
         self.scenery = Scenery(self.flight, calm, ClearArea(head=_WAITING))
@@ -106,13 +130,8 @@ class FlownFlight:
         self.path = FlownPath(self.flight)
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)
-        self._network_here = self._shadow() if challenge.shadows and self._policy else None
-        self.path_preview = PathPreview(self.flight, self._policy if challenge.guides else None)
-
-    def _shadow(self) -> Flight[Alone]:
-        """Return the network's own flight from the same start, flown unseen: the card tells its score."""
-        assert self._policy is not None
-        return Flight(self.flight.recording, Alone(self._policy))
+        self._shadow = Flight(self.flight.recording, Alone(self._policy)) if rules.shadows and self._policy else None
+        self.path_preview = PathPreview(self.flight, self._policy if rules.guides else None)
 
     @property
     def helps(self) -> bool:
@@ -136,7 +155,7 @@ class FlownFlight:
         if not self.credit.alone:
             self._policy = network.policy
             self.flight.chooser.change_network(network.policy)
-            self.path_preview.ask(self._policy if self.challenge.guides else None)
+            self.path_preview.ask(self._policy if self.challenge.rules.guides else None)
 
     # Time
 
@@ -146,23 +165,57 @@ class FlownFlight:
         self.scenery.animate()
         self.help_words.shown = max(0, self.help_words.shown - 1)
 
-    def due(self, asked: Push) -> bool:
-        """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
+    def step(self, asked: Push) -> Happened:
+        """Advance by 1/60 s, in which the stick asks for that; the craft may wait, or slowed time make no step due."""
         self.pace.rate = self._settings.pace
         if self._waits(asked):
             self._help()
-            if self.flight.chooser.guard:
-                self.flight.chooser.guard.hang(self.flight, asked)
+            if guard := self.flight.chooser.guard:
+                guard.hang(self.flight, asked)
             self.path_preview.follow(waiting=True)
-            return False
-        return bool(self.pace.steps())
+            return Happened()
+        happened = self._fly(asked) if self.pace.steps() else Happened()
+        self._heard.follow(self.scenery.stage.thrust[0])  # between steps too, or fire would fall silent
+        return happened
+
+    def _fly(self, asked: Push) -> Happened:
+        """Fly a step with all that belongs to it; after the end, only what still moves goes on."""
+        flight, was_over = self.flight, self.flight.over
+        self.begun = True
+        if not was_over:  # at the end, the figures stay those of the last moment before
+            self._readouts = flight_readouts(flight.env)
+            self.credit.prepare()
+        self._help()
+        flight.step(steered(asked, flight.observation) if self._settings.one_switch else asked)
+        if self.ghost:
+            self.ghost.step()
+        if self._shadow:
+            self._follow_shadow(self._shadow)
+        self.path_preview.follow(waiting=False)
+        if not was_over:
+            self._follow_flight()
+        if flight.wrecked and self._last_chance:
+            self._last_chance.look(_SEARCH)
+        if sound := self.challenge.stepped(self):
+            self.context.sound.play(sound)
+        ended = flight.over and not was_over
+        if ended:
+            self._end()
+        if flight.over:
+            self.ending.follow()
+            self._finish_card()
+        self.scenery.clear = self.clear
+        self.scenery.follow(ended, self.ending.shot)
+        return Happened(True, ended, flight.over and self.challenge.rules.again and self.ending.due)
 
     def _waits(self, asked: Push) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         self._held_before &= asked != Push()
-        touched, guard = asked != Push() or not self.challenge.waits, self.flight.chooser.guard
+        touched, guard = asked != Push() or not self.challenge.rules.waits, self.flight.chooser.guard
         ready = guard is None or guard.ready(self.flight)  # or nobody would keep it from harm at first
-        goes = touched and ready and not (self._held_before or self.challenge.holds)
+        goes = (
+            touched and ready and not (self._held_before or (self.challenge.rules.holds and self.helped.help == "off"))
+        )
         if goes or self.flight.chooser.hand is StickHolder.NETWORK:
             self.waiting = False
         return self.waiting
@@ -181,30 +234,6 @@ class FlownFlight:
 
             flight.chooser.guard = Guard(flight.chooser, ahead)
 
-    def prepare(self) -> None:
-        """Make ready for the flight's next step; after the end, only what still moves goes on."""
-        self._was_over, self.begun = self.flight.over, True
-        if not self._was_over:  # at the end, the figures stay those of the last moment before
-            self._readouts = flight_readouts(self.flight.env)
-            self.credit.prepare()
-        self._help()
-
-    def follow(self) -> None:
-        flight = self.flight
-        if self.ghost:
-            self.ghost.step()
-        if self._network_here:
-            self._network_here.step()
-        self.path_preview.follow(waiting=False)
-        if not self._was_over:
-            self._follow_flight()
-        self.scenery.clear = self.clear
-        if flight.wrecked and self._last_chance:
-            self._last_chance.look(_SEARCH)
-        self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
-        if sample := self.challenge.follow(flight):
-            self.context.sound.play(sample)
-
     def _follow_flight(self) -> None:
         flight, asks = self.flight, self._settings.show_thinking
         if asks:
@@ -218,11 +247,6 @@ class FlownFlight:
             self._last_chance.note(flight.env)
         if flight.over:
             self._readouts = at_touch(self._readouts, flight.env)
-            self.challenge.note_end(flight, self.credit)
-
-    def sound(self) -> None:
-        """Let the flight be heard; call it in every 1/60 s, between steps too, or fire would fall silent."""
-        self._heard.follow(self.scenery.stage.thrust[0])
 
     def think(self, decisions: int) -> None:
         """Fly the six futures of the present moment some decisions further, for whoever asks."""
@@ -246,59 +270,69 @@ class FlownFlight:
         self.copilot_panel.forget()
         self.copilot_panel.follow(self.flight, self.futures)
 
+    def _end(self) -> None:
+        self.ending.whole = self.scenery.shot_of(self.path.places)
+        self.challenge.ended(self)
+
     def make_card(self) -> OutcomeCard:
-        """Return the outcome card."""
-        flight, credit, ending = self.flight, self.credit, self.ending
-        ending.whole = self.scenery.shot_of(self.path.places)
-        unranked = rung_of(flight) is not None or self.challenge.name
+        """Return the card, to which all that follow the flight have added what they know."""
+        flight, credit, whole = self.flight, self.credit, self.ending.whole
         card = outcome_card(flight.env, flight.share)
-        card = replace(
-            card, score=credit.score(0 if unranked else self.best[0]), reason=credit.reason(card.reason),
-            assists=credit.assists, who=credit.who, place=self.path.clear_place(ending.whole.view(1.0)),
-            compared=self._compared(self.best[1]),
-        )  # fmt: skip
+        card.who, card.place = credit.who, self.path.clear_place(whole.view(1.0)) if whole else 0.5
+        credit.add_to(card)
         if credit.helped:
-            chance = None if card.good else self._last_chance
-            while chance and not chance.known:
-                chance.look(_SEARCH)
-            bare = "" if card.good else why_not_saved(flight, chance)
-            watched, times = self.interventions.watched(flight), len(self.interventions.moments)
-            advice = "" if bare else card.advice  # why it was not saved says more
-            card = replace(card, stepped_in=times, watched=watched, bare=bare, advice=advice)
-        return self.challenge.card(card, flight, credit)
+            card.stepped_in, card.watched = len(self.interventions.moments), self.interventions.watched(flight)
+        if add := self.challenge.words(self).card:
+            add(card)
+        return card
 
-    def _compared(self, best: int) -> tuple[tuple[str, str], ...]:
-        """Return other scores from the same start: the player's `best` before, 0 for none, and the network's."""
-        rows = [(texts.CARD_BEST_HERE, texts.SCORE.format(count=best))] if best else []
-        if shadow := self._network_here:
-            while not shadow.over:
-                shadow.step()
-            score = landing_score(shadow.env)
+    def _finish_card(self) -> None:
+        """Add what takes longer than a frame to be known: how the network fares from there, and what would have saved.
+
+        Until it is known, the card leaves it open.
+        """
+        card = self.ending.card
+        if self._shadow and card:
+            score = landing_score(self._shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
-            rows.append((texts.CARD_NETWORK.format(who=self.credit.who), words))
-        return tuple(rows)
+            card.compared[texts.CARD_NETWORK.format(who=self.credit.who)] = words if self._shadow_ended else "…"
+        if card and self.credit.helped and not card.good and not card.bare:
+            chance = self._last_chance
+            if chance is None or chance.known:
+                card.bare = why_not_saved(self.flight, chance)
+                card.advice = "" if card.bare else card.advice  # why it was not saved says more
 
-    def write_down(self, records: Records) -> Entry | None:
-        """Record the finished flight, and return its line; None if that was done before; report what failed."""
+    def _follow_shadow(self, shadow: Flight[Alone]) -> None:
+        """Fly the network's own flight from the same start, unseen; after the player's, some steps in a frame."""
+        for _ in range(_CATCHES_UP if self.flight.over else 1):
+            if not self._shadow_ended:
+                shadow.step()
+
+    @property
+    def _shadow_ended(self) -> bool:
+        return self._shadow is None or self._shadow.over or self._shadow.at >= _LONGEST
+
+    def keep(self, total: int = 0) -> Entry:
+        """Write the finished flight into the logbook, once, and return its line; `total` is a descent's so far."""
         if self.record:
-            return None
-        credit, challenge = self.credit, self.challenge
-        entry = records.keep(
+            return self.record.entry
+        credit = self.credit
+        entry = self._records.keep(
             self.flight,
             time.time(),
             alone=credit.counts,
             barred=credit.bar,
             network=self.network.name if self.network.policy else "",
-            course=challenge.name,
+            course=self.challenge.name,
             medal=credit.medal,
             pace=credit.pace,
             guarded=max(0.0, self.interventions.throughout),
-            total=challenge.total,
+            total=total,
         )
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
-        if message := challenge.written(entry) or records.problem:
-            self.context.note(message)
+        if self._records.problem:
+            self.context.note(self._records.problem)
         return entry
 
     # The picture
@@ -309,18 +343,15 @@ class FlownFlight:
         if not self.begun:
             reading = self.context.reading()
             if reading.scale > _LARGE * reading.whole.scale:  # the words reach over the Earth's usual place
-                self._earth = EARTH[0], max(EARTH[1], self.clear.head - _BELOW_HEAD + 1.3 * EARTH_RADIUS)
+                self._earth = self.clear.earth(EARTH, EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
 
     def _clear_of(self, head: Head) -> ClearArea:
         reading = self.context.reading()
-        scale, view = reading.whole.scale, reading.whole.view
-        low = head.write(reading, drawn=False) * reading.scale / scale + _BELOW_HEAD + min(view.top, 0.0)
-        right = float(VIEW_SIZE[0])
-        if self.thinks:
-            right = min(right, (self.copilot_panel.box(reading).left - 16) * reading.scale / scale + view.left)
-        return ClearArea(right=max(right, 0.4 * VIEW_SIZE[0]), head=max(low, ClearArea.head))
+        low, foot = head.write(reading, drawn=False) + _BELOW_HEAD, foot_of(reading, self._shown(whole=False))
+        right = self.copilot_panel.box(reading).left - 16 if self.thinks else reading.view.right
+        return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - low))
 
     @property
     def thinks(self) -> bool:
@@ -333,16 +364,18 @@ class FlownFlight:
 
         `low` is how far a card reaches down, in points, which the read-outs give way to.
         """
-        world, flight = canvas.whole, self.flight
+        flight, shown = self.flight, self._shown(whole=whole)
+        foot = foot_of(canvas, shown).top
+        world = canvas.above(canvas.view.bottom - foot)
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
         self.scenery.draw_land(world, alpha, self._earth)
-        if self.challenge.ahead:
-            begin_hills(self.challenge.ahead, view)
+        if self.ahead:
+            begin_hills(self.ahead, view)
         if self.ghost:
             self.ghost.draw_way(world, view)
         if flight.over:
-            self.path.draw(world, view, self.interventions.moments)
+            self.path.draw(world, view, self.interventions.moments, self.ending.retraced)
         thinks = self.thinks or (whole and self.copilot_panel.shown)
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
@@ -354,9 +387,10 @@ class FlownFlight:
         pose = flight.poses.at(alpha)[0]
         if not flight.over:
             draw_wind(world, view, pose, flight.env, self._clear_of(head))
-        self.challenge.draw(world, view, self, alpha)
-        if low * canvas.scale < world.surface.get_height() - READOUTS * world.scale:
-            draw_flight(world, self._readouts, self._shown(whole=whole))
+        if marks := self.challenge.words(self).marks:
+            marks(world, view, alpha)
+        if low < foot:
+            draw_flight(canvas, self._readouts, shown)
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, flight.share if self.begun else None, self.network.name)

@@ -19,12 +19,14 @@ from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.readouts import Lamp
 from game.flight.credit import ASSISTS
+from game.flight.networks import titled
 from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
 from game.ui.hints import Hint, HintRow, flight_hints, split
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
+    from game.scenes.play.challenge import Words
     from game.scenes.play.flown_flight import FlownFlight
     from game.scenes.play.help import HelpWords
 
@@ -203,47 +205,54 @@ def draw_ladder(canvas: Canvas, left: float, baseline: float, rung: int) -> None
 
 def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     """Return the words of a flight: all while there is time to read, which `whole` says, or the sentence."""
-    flight, challenge, controls = flown.flight, flown.challenge, flown.context.controls
-    waits, stuck, lamp = flown.waiting and not flight.over, flown.stuck, flown.interventions.lamp(flight)
-    said = challenge.sentence(flight, controls, waiting=waits, stuck=stuck)
+    flight, controls, words = flown.flight, flown.context.controls, flown.challenge.words(flown)
+    free, said = flown.challenge.rules.free, words.sentence
+    waits, lamp = flown.waiting and not flight.over, flown.interventions.lamp(flight)
     helps = flown.help_words if flown.helps and not flight.over else None
     means = partial(_means, flown)
     if not (waits or whole or flight.over):
         usual = sentence(flight, flown.credit, flown.interventions.word, controls)
-        words, warns = (said, False) if said else usual
+        sentence_now, warns = (said, False) if said else usual
         shown = helps if flown.help_words.shown else None
         panel = flown.copilot_panel.box(flown.context.reading()) if flown.thinks else None
-        return Head(words, warns, lamp, hints=hints, help=shown, means=means, panel=panel)
+        return Head(sentence_now, warns, lamp, hints=hints, help=shown, means=means, panel=panel)
     if flown.ending.shown:
         return Head(hints=hints)
-    caption, name = challenge.titles(flight, flown.network, whole=whole)
-    head = Head(caption=caption, name=name, rung=rung_of(flight), aside=_asides(flown), hints=hints)
+    caption, name = words.title, words.line
+    network = texts.WITH_NETWORK.format(network=titled(flown.network.name)) if whole and flight.chooser.network else ""
+    if free:
+        name = name or network
+    elif network and flown.challenge.rules.elsewhere:
+        caption = texts.DIAL_JOIN.join((caption, network))
+    head = Head(caption=caption, name=name, rung=rung_of(flight), aside=_asides(flown, words), hints=hints)
     if flight.over:
         return replace(head, sentence=said or "")
     if not waits:
         return replace(head, sentence=flown.credit.header, lamp=lamp)
-    opening = challenge.opening
+    opening = words.opening
     if flown.begun:
-        opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
-    keys = flight_hints(controls) if (opening or challenge.free) and said is None else []
+        opening = texts.TUTORIAL_LET_GO if flown.stuck else texts.WAITS_AGAIN
+    keys = flight_hints(controls) if (opening or free) and said is None else []
     guided = [(texts.PATH_NETWORK.format(who=flown.credit.who), NET)] if flown.path_preview.asks else []
-    paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
+    paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and free else []
     return replace(head, sentence=said or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
 
 
-def _asides(flown: FlownFlight) -> list[str]:
-    flight, challenge, credit = flown.flight, flown.challenge, flown.credit
+def _asides(flown: FlownFlight, words: Words) -> list[str]:
+    flight, credit = flown.flight, flown.credit
     off = flown.helps and flown.helped.help == "off" != flown.context.settings.help
+    before = not (flown.begun or flight.over)
+    beside = flown.ghost and words.goal and not flight.over
     lines = [
-        texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
+        texts.HELP_NOT_HERE if off and flown.challenge.rules.kept and before else "",
         credit.header if credit.alone and not flight.over else "",
-        credit.notice or challenge.goal,
-        challenge.eased_line if credit.bar == "assists" and not (flown.begun or flight.over) else "",
-        texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and challenge.goal and not flight.over else "",
+        credit.notice or words.goal,
+        words.eased if credit.bar == "assists" and before else "",
+        texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and beside else "",
         *surroundings(flight.env),
-        *challenge.asides(flight),
+        *words.asides,
     ]
-    return [words for words in lines if words]
+    return [line for line in lines if line]
 
 
 def _means(flown: FlownFlight) -> str:

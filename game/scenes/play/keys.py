@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
+
+import pygame
 
 from game.core import texts
 from game.flight.flight import StickHolder
@@ -18,33 +21,36 @@ _IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named whi
 
 def flight_actions(scene: PlayScene) -> list[Action]:
     """Return what keys do in flight."""
-    challenge, flight = scene.challenge, scene.flight
+    rules, words, flight = scene.challenge.rules, scene.words, scene.flight
     taken = flight.chooser.hand is StickHolder.NETWORK
     hints = {
         Command.HANDOVER: texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER,
-        Command.CHOICES: texts.CHOICES_HINT if challenge.free else "",
-        Command.NEXT: "" if challenge.through else challenge.next_hint,
-        Command.RETRY: texts.HINT_RETRY,
+        Command.NEXT: words.next,
+        Command.RETRY: texts.HINT_RETRY if scene.flown.begun else "",
         Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
     }
-    if flight.over or not flight.chooser.network or challenge.keeps_stick(flight):
+    if flight.over or not flight.chooser.network or (rules.keeps_stick and not taken):
         hints[Command.HANDOVER] = ""
-    calm, mouse = scene.waiting or flight.over, scene.context.controls.mouse_in_use
-    named = hints if calm else _IN_FLIGHT if mouse else ()
-    return [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
+    named: Iterable[Command] = hints if scene.waiting else ()
+    if not (scene.waiting or flight.over) and scene.context.controls.mouse_in_use:
+        named = _IN_FLIGHT
+    table = [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
+    thinks = texts.HINT_THINKS if scene.waiting and flight.chooser.network and not taken else ""
+    shows = Action(pygame.K_F1, scene.show_thinking, thinks, Command.MODE)
+    return [*table, shows, Action(Command.MODE, scene.show_thinking)]
 
 
 def card_actions(scene: PlayScene, go_on: Run) -> list[Action]:
     """Return the two actions that an outcome card names: to go on, and one of the others."""
-    card, challenge = scene.ending.card, scene.challenge
+    card, rules, words = scene.ending.card, scene.challenge.rules, scene.words
     assert card is not None
-    again, new = challenge.again_hint, challenge.new_hint
-    first = (texts.CARD_FIRST_FIXED if challenge.fixed else texts.CARD_FIRST)[card.good]
+    again, new = words.again, words.new
+    first = (texts.CARD_FIRST_FIXED if rules.fixed else texts.CARD_FIRST)[card.good]
     if card.rung is not None and card.rung < (rung_of(scene.flight) or 0):
         first = texts.LADDER_NEARER
     if card.good:
         first, other, hint = new or first, Command.RETRY, again or texts.HINT_AGAIN
-    elif challenge.fixed:
+    elif rules.fixed:
         first, other, hint = again or first, Command.PAUSE, texts.HINT_LEAVE
     else:
         first, other, hint = again or first, Command.NEXT, new or texts.HINT_NEW

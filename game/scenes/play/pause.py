@@ -10,9 +10,11 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
+from game.core.settings import HELP, TOP_RUNG
 from game.drawing.tokens import INK
 from game.explain.explained import Explained
-from game.explain.readouts import READOUTS
+from game.explain.readouts import GAUGES, foot_of
+from game.flight import networks
 from game.input.controls import Command
 from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Table
@@ -26,8 +28,9 @@ if TYPE_CHECKING:
     from game.ui.panel import Panel
     from game.ui.widget import OnPress
 
-_WORD: Final = 22.0
+_WORD: Final = 20.0
 _COVER: Final = 0.94  # opacity: the Earth does not shine through the words
+_PILOTS: Final = "pilots"  # in the player's folder
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
 
@@ -62,7 +65,7 @@ class PauseScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        panel.title(texts.PAUSE_TITLE, 44.0, "extralight")
+        panel.title(texts.PAUSE_TITLE, 36.0, "extralight")
         self.describe_below(panel)
         panel.gap(8)
         retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
@@ -87,26 +90,72 @@ class PauseScene(PanelScene):
 
 
 class FlightPauseScene(PauseScene):
-    """Pause of a flight, which is seen with all read-outs, what the network thinks, and its six futures as paths."""
+    """Pause of a flight, and the choices for it and the next ones; each is saved the moment it is made.
 
-    most = 300.0
+    The flight is seen with all read-outs, what the network thinks, and its six futures as paths. What a challenge fixes
+    is not offered.
+    """
 
-    def __init__(self, context: Context, below: PlayScene, **options: object) -> None:
+    most = 320.0
+
+    def __init__(self, context: Context, below: PlayScene) -> None:
         self._flight = below
         self.explained = Explained()
-        super().__init__(context, below, **options)  # type: ignore[arg-type]
+        super().__init__(context, below, below.retry)
+
+    def describe(self, panel: Panel) -> None:
+        super().describe(panel)
+        flown, rules = self._flight.flown, self._flight.challenge.rules
+        panel.gap(6)
+        if flown.helps:
+            now = HELP.index(flown.helped.help)
+            panel.choice(texts.CHOICES_HELP, [texts.HELP[word] for word in HELP], now, self._choose_help)
+            panel.aside(lambda: self._flight.lack or texts.HELP_MEANS[flown.helped.help])
+        if rules.free:
+            self._describe_starts(panel, begun=flown.begun)
+        if self._flight.words.next:
+            panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
+        elif not flown.credit.alone:
+            panel.button(networks.pause_label(self._flight.network.name), self._open_networks)
+            if (self.context.user_dir / _PILOTS).is_dir():
+                panel.button(texts.PILOTS_OPEN, lambda: push("pilots", self._flight.choose_own))
 
     def describe_below(self, panel: Panel) -> None:
         """Add which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
         panel.aside(head.caption)
-        if not self._flight.challenge.free:
+        if not self._flight.challenge.rules.free:
             panel.text(head.name)
         for words in head.aside:
             panel.aside(words)
 
+    def _describe_starts(self, panel: Panel, *, begun: bool) -> None:
+        settings, pads = self.context.settings, texts.CHOICES_PADS_WORDS
+        panel.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), self._choose_pads)
+        if not settings.three_pads:  # among hills, all begin from anywhere
+            rung, rungs = max(0.0, settings.rung), (0.0, float(TOP_RUNG))
+            panel.slider(texts.CHOICES_LADDER, rung, rungs, self._choose_rung, step=1.0, figure=_rung)
+        if begun:
+            panel.aside(texts.CHOICES_LATER)
+
+    def _choose_help(self, number: int) -> None:
+        self._flight.flown.helped.help = HELP[number]
+        self.context.apply_settings()
+
+    def _choose_pads(self, number: int) -> None:
+        self.context.settings.three_pads = bool(number)
+        self.context.apply_settings()
+        self.build()
+
+    def _choose_rung(self, rung: float) -> None:
+        self.context.settings.rung = round(rung)
+        self.context.apply_settings()
+
+    def _open_networks(self) -> Transition:
+        return push("runs", choose=self._flight.choose_network)
+
     def actions(self) -> Table:
-        return [*super().actions(), self.explained.action()]
+        return [*super().actions(), self.explained.action(), Action(Command.CHOICES, Pop)]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return None if self.explained.handle_event(event) else super().handle_event(event)
@@ -121,9 +170,8 @@ class FlightPauseScene(PauseScene):
         return pygame.FRect(room.left, 28, room.width, min(row.top for row in self.hint_rows(canvas)) - 40)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        low = READOUTS * canvas.whole.scale / canvas.scale + 20
         left, _ = self._between(canvas)
-        return hint_lines(self.hints, canvas, (left, canvas.view.bottom - low), self.most)
+        return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), self.most)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._flight.flown.draw(canvas, 1.0, Head(), whole=True)
@@ -133,3 +181,7 @@ class FlightPauseScene(PauseScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
         self.explained.draw(canvas)
+
+
+def _rung(rung: float) -> str:
+    return texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -14,13 +15,13 @@ from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.explain.explained import Explained
 from game.flight import networks, own
-from game.flight.choosers import steered
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
-from game.flight.logbook import Records, best_alone
+from game.flight.logbook import Records, ladder_rung
+from game.flight.outcomes import OutcomeCard
 from game.input.controls import Command, translate
 from game.scenes.play.card import ShownCard
-from game.scenes.play.challenge import Challenge, Duel
+from game.scenes.play.challenge import Challenge, Duel, Words
 from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
 from game.scenes.play.free import FreeFlight
@@ -31,8 +32,8 @@ from game.scenes.play.tutorial import Tutorial
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
 from game.ui.context import Context
+from game.ui.form import Form
 from game.ui.hints import HintRow
-from game.ui.widget import OnPress
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
@@ -54,8 +55,6 @@ class PlayScene(Scene):
 
     """
 
-    flows = True
-
     def __init__(
         self,
         context: Context,
@@ -67,17 +66,17 @@ class PlayScene(Scene):
         super().__init__(context)
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._stick = FlightControls(context.controls, context.settings)
-        self.explained = Explained()
+        self.form, self.explained = Form(context), Explained()
         self._away = self._held_next = 0  # steps since the window was left, and the key for what comes next is held
         self._records = Records(context.user_dir)
         entries = self._records.entries()
         if self._records.problem:
             context.note(self._records.problem)
-        self._best, self._sitting = best_alone(entries), Sitting(entries)
+        self._sitting = Sitting(entries)
         new = seed is None and not context.settings.tutored
         usual = Duel(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
-        self.challenge = challenge or usual
-        self.challenge.recall(entries)
+        ladder_rung(context.settings, entries)
+        self._take(challenge or usual)
         self._load_network()
         self._begin_anew() if seed is None else self._begin(seed)
 
@@ -85,15 +84,24 @@ class PlayScene(Scene):
         """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
         self.flown.hang()
-        other = self.challenge.eases and eased(self._settings) != self.flight.recording.easing
-        if not (self.flown.begun or self.flight.over) and (other or self.challenge.chosen() != self._begun_with):
+        if not (self.flown.begun or self.flight.over) and self._chosen != self._begun_with:
             self._begin(self.flight.recording.seed)
 
+    @property
+    def _chosen(self) -> tuple[object, ...]:
+        """What the player has chosen for the next flight."""
+        settings, rules = self._settings, self.challenge.rules
+        return (settings.three_pads, settings.rung) if rules.free else (), rules.eases and eased(settings)
+
+    def _take(self, challenge: Challenge) -> None:
+        """Take what the next flights are flown as. Help of free flights does not follow into a challenge."""
+        self.challenge = challenge
+        self._helped = self._settings if challenge.rules.free else replace(self._settings, help="off")
+
     def reword(self) -> None:
-        self.challenge.word()
         self.flown.reword()
         if self.ending.card:
-            self.ending.card = self._sitting.card(self.flown.make_card())
+            self.ending.card = self._make_card()
 
     def exit(self) -> None:
         self._stick.release()
@@ -101,6 +109,12 @@ class PlayScene(Scene):
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         self.explained.handle_event(event)
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            canvas = self.context.reading()
+            self.form.lay_keys(self.hint_rows(canvas), canvas)
+            outcome = self.form.handle_event(event)
+            if self.form.used:
+                return outcome
         if event.type in _RELEASES:
             self._held_next = 0
         elif translate(event) is Command.NEXT:
@@ -109,8 +123,8 @@ class PlayScene(Scene):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         if event.type in _INTERRUPTS:
             self.flown.hang()
-        if self.flown.helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
-            if self.flown.helped.help != "off" and (lack := self._lack):
+        if self._helps and self.flown.help_words.take(event, self._head.help_boxes(self.context.reading())):
+            if self.flown.helped.help != "off" and (lack := self.lack):
                 self.context.note(lack)
             return None
         self._stick.take(event)
@@ -123,10 +137,6 @@ class PlayScene(Scene):
     def takes_switch(self) -> bool:  # type: ignore[override]
         return not self.flight.over
 
-    @property
-    def notes_low(self) -> bool:  # type: ignore[override]
-        return self.waiting or self.flight.over
-
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self.flown.animate()
@@ -136,20 +146,29 @@ class PlayScene(Scene):
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self.pause()
         self._held_next += self._held_next > 0
-        if self._held_next > _SKIP_ALL and self.challenge.next_hint:
+        if self._held_next > _SKIP_ALL and self.words.next:
             self._end_challenge()
         asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
-        due = self.flown.due(asked)
-        if self.waiting:
-            return None
-        if due:
-            self.flown.prepare()
-            self.flight.step(steered(asked, self.flight.observation) if self._settings.one_switch else asked)
-            self.flown.follow()
-            self._follow_flight()
-        self.flown.sound()
+        happened = self.flown.step(asked)
+        if happened.ended and not self.challenge.rules.again:
+            self._sitting.add(self.flown)
+            self.ending.card = self._make_card()
+            if self._sitting.first:
+                self._sound.play("choose")
+        elif happened.retries:
+            self.retry()
         return None
+
+    def _make_card(self) -> OutcomeCard:
+        card = self.flown.make_card()
+        self._sitting.add_to(card)
+        return card
+
+    @property
+    def words(self) -> Words:
+        """What is said of the flight."""
+        return self.challenge.words(self.flown)
 
     @property
     def _across(self) -> float:
@@ -161,24 +180,25 @@ class PlayScene(Scene):
 
     def actions(self) -> Table:
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
-        explain = [Action(key, self.show_thinking) for key in (pygame.K_F1, Command.MODE)]
         if self.ending.shown == 0:
-            return [*flight_actions(self), Action(Command.CONFIRM, self.ending.hurry), *explain]
+            return [*flight_actions(self), Action(Command.CONFIRM, self.ending.hurry)]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
-        return [*self._card_actions(), *flight_actions(self), Action(Command.CONFIRM, self._go_on), *space, *explain]
+        return [*self._card_actions(), *flight_actions(self), Action(Command.CONFIRM, self._go_on), *space]
 
     def _card_actions(self) -> list[Action]:
+        if self.ending.card is None:
+            return []
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
-        hint = self.challenge.copy_hint or texts.CODE_HINT_COPY
-        copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
-        return [*card_actions(self, self._go_on), *offer, *copy] if self.ending.card else []
+        watch = [Action(pygame.K_t, self._watch, texts.CARD_WATCH, Command.STEP)] if self.flown.record else []
+        copy = [Action(pygame.K_k, self._copy, self.words.copy, Command.NEXT)] if self.words.result else []
+        return [*card_actions(self, self._go_on), *offer, *watch, *copy]
 
     @property
     def runs(self) -> dict[Command, Run]:
         """What each command does in a flight, whether or not a hint names it."""
         return {
             Command.HANDOVER: self._hand_over,
-            Command.CHOICES: self._choose,
+            Command.CHOICES: self.pause,
             Command.NEXT: self._asking(self._begin_elsewhere),
             Command.RETRY: self._asking(self.retry),
             Command.PAUSE: Pop if self.leaves else self.pause,
@@ -190,21 +210,21 @@ class PlayScene(Scene):
 
     def _asking(self, begin: Callable[[], None]) -> Run:
         """Return what a key for another start does: ask first, where more than the present flight would be lost."""
-        stake = self.challenge.stake
-        return partial(self._ask, stake, begin) if stake else begin
+        return partial(self._ask, begin) if self.challenge.rules.staked else begin
 
-    def _ask(self, stake: tuple[str, str], begin: Callable[[], None]) -> Transition:
+    def _ask(self, begin: Callable[[], None]) -> Transition:
         from game.scenes.menus.dialogs import QuestionDialog
 
         answers = [(texts.STAKE_FLY_ON, lambda: None), (texts.STAKE_END, begin)]
-        return Push(QuestionDialog(self, *stake, answers))
+        return Push(QuestionDialog(self, *self.words.stake, answers))
 
     def show_thinking(self) -> None:
         self._settings.show_thinking = not self._settings.show_thinking
         self.context.apply_settings()
 
     def _hand_over(self) -> None:
-        if self.challenge.keeps_stick(self.flight):
+        by_hand = self.flight.chooser.hand is StickHolder.HUMAN
+        if self.challenge.rules.keeps_stick and by_hand:
             return
         if not self.flight.over and self.flight.chooser.hand_over():
             self._sound.play("to_network" if self.flight.chooser.hand is StickHolder.NETWORK else "to_human")
@@ -213,7 +233,7 @@ class PlayScene(Scene):
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     @property
-    def _lack(self) -> str:
+    def lack(self) -> str:
         """Why the network, or the player's own pilot, cannot help; empty if it can, or if none is asked to."""
         if not self.flight.chooser.shares or self.flight.chooser.copilot is not None:
             return ""
@@ -221,33 +241,26 @@ class PlayScene(Scene):
         return text.format(name=self.network.name, problem=self.network.problem)
 
     def _copy(self) -> None:
-        if self.flown.record:
-            give(self.context, *self.challenge.message(self.flown.record))
+        line = self.words.result
+        give(self.context, line, texts.CODE_LINE_COPIED.format(line=line))
+
+    def _watch(self) -> Transition | None:
+        """Watch the flight that has ended; from there, it can be saved as a picture that moves, or sent to a friend."""
+        return push("replay", self.flown.record)
+
+    @property
+    def _helps(self) -> bool:
+        """Whether help can be chosen now, by its words."""
+        return self.flown.helps and not self.flight.over
 
     @property
     def leaves(self) -> bool:
         """Whether Escape goes straight back: from the card of a challenge, where nothing is lost."""
-        return self.ending.card is not None and not (self.challenge.free or self.challenge.stake)
+        return self.ending.card is not None and not (self.challenge.rules.free or self.challenge.rules.staked)
 
     def pause(self) -> Transition:
         self._away = 0
-        return push("flight_pause", self, retry=self.retry, more=self._pause_words)
-
-    def _pause_words(self) -> list[tuple[str, OnPress]]:
-        network, pilot = networks.pause_labels(self.network.name)
-        words: list[tuple[str, OnPress]] = [
-            (network, lambda: push("runs", choose=self.choose_network)),
-            (pilot, lambda: push("pilots", self._choose_own)),
-        ]
-        if self.challenge.next_hint:
-            words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
-        words.append((texts.PAUSE_CHOICES if self.challenge.free else texts.CHOICES_HELP, self._choose))
-        return [*words, (texts.ASSISTS_OPEN, lambda: push("settings", "flights"))]
-
-    def _choose(self) -> Transition | None:
-        """Open the choices for the next flights; in a challenge, few can be changed."""
-        begun, helped = self.flown.begun, self.flown.helped
-        return push("choices", self, begun=begun, free=self.challenge.free, helped=helped, lack=self._lack)
+        return push("flight_pause", self)
 
     def choose_network(self, name: str) -> None:
         self._settings.model = name
@@ -256,7 +269,7 @@ class PlayScene(Scene):
         self.context.apply_settings()
         self._change_network()
 
-    def _choose_own(self, path: Path | None) -> None:
+    def choose_own(self, path: Path | None) -> None:
         own.take(self.context, path)
         self._change_network()
 
@@ -271,7 +284,7 @@ class PlayScene(Scene):
         ending, ghost = self.ending, self.flown.ghost
         if ending.card is None or ending.shown == 0:
             return None
-        rival = ghost.row(self.flight.env) if ghost and self.challenge.compares else None
+        rival = ghost.row(self.flight.env) if ghost and self.challenge.rules.compares else None
         hints = hints_of(self._card_actions(), self._controls)
         return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints, rival)
 
@@ -297,7 +310,7 @@ class PlayScene(Scene):
         return self.flown.waiting
 
     def _load_network(self) -> None:
-        context, self._loaded_for = self.context, self.challenge.elsewhere
+        context, self._loaded_for = self.context, self.challenge.rules.elsewhere
         settings = context.settings
         shipped, mine = context.models_dir, context.user_dir
         self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._loaded_for)
@@ -309,10 +322,12 @@ class PlayScene(Scene):
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's own."""
         self._stick.begin()
-        if self.challenge.elsewhere != self._loaded_for:
+        if self.challenge.rules.elsewhere != self._loaded_for:
             self._load_network()
-        self._begun_with = self.challenge.chosen()
-        self.flown = flown = FlownFlight(self.context, seed, self.network, self.challenge, spawn)
+        self._begun_with = self._chosen
+        self.flown = flown = FlownFlight(
+            self.context, self._records, self.network, self.challenge, self._helped, seed, spawn
+        )
         self.flight, self.credit, self.ending = flown.flight, flown.credit, flown.ending
 
     def _begin_anew(self) -> None:
@@ -330,66 +345,35 @@ class PlayScene(Scene):
         if card is None or not card.good:
             spawn = "" if card and card.rung is not None else self.flight.recording.spawn
             self._begin(self.flight.recording.seed, spawn)
-        elif self.challenge.fixed:
-            following = self.challenge.following()
-            if following is None:
+        elif self.challenge.rules.fixed:
+            if self.challenge.rules.following is None:
                 return Pop()
-            self.challenge = following
+            self._take(self.challenge.rules.following())
             self._begin(self.flight.recording.seed)
         else:
             self._begin_elsewhere()
         return None
 
     def _begin_elsewhere(self) -> None:
-        self.challenge.skip()
-        self._remember()
-        if self.challenge.through:
+        rules = self.challenge.rules
+        if rules.skip:
+            rules.skip()
+        if rules.through:
             self._end_challenge()
         else:
-            self._begin(self.flight.recording.seed) if self.challenge.fixed else self._begin_anew()
+            self._begin(self.flight.recording.seed) if rules.fixed else self._begin_anew()
 
-    def _leave_challenge(self) -> Transition:
+    def leave_challenge(self) -> Transition:
         self._end_challenge()
         return Pop()
 
     def _end_challenge(self) -> None:
+        """End the tutorial, which is not offered again; free flights follow."""
         self._held_next = 0
-        self.challenge.leave()
-        self._remember()
-        self.challenge = FreeFlight(self._settings)
-        self.challenge.recall(self._records.entries())
+        self._settings.tutored = True
+        self.context.apply_settings()
+        self._take(FreeFlight(self._settings))
         self._begin_anew()
-
-    # The end of a flight
-
-    def _follow_flight(self) -> None:
-        """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
-        self._remember()
-        if not self.flight.over:
-            return
-        challenge, ending = self.challenge, self.ending
-        ending.follow()
-        if challenge.again():
-            self._write_down()
-            if ending.due:
-                self.retry()
-        elif ending.card is None:
-            self.flown.best = self._best, self._sitting.best_here(self.flight)
-            self._sitting.add(self.flown)
-            ending.card = self._sitting.card(self.flown.make_card())
-            if self._sitting.first:
-                self._sound.play("choose")
-            self._remember()
-            self._write_down()
-
-    def _remember(self) -> None:
-        """Save the pilot's progress in a challenge as soon as it is made."""
-        if self.challenge.remember(self._settings):
-            self.context.apply_settings()
-
-    def _write_down(self) -> None:
-        if self.challenge.kept and (entry := self.flown.write_down(self._records)):
-            self._best = max(self._best, best_alone([entry]))
 
     def _accept_help(self) -> None:
         self.flown.helped.help = "guard"

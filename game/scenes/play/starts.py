@@ -4,6 +4,7 @@ from datetime import date
 
 from game.flight.days import Days
 from game.flight.flight_file import Record
+from game.flight.logbook import Records, best_descent
 from game.flight.replay import FlightReplay
 from game.scenes.play.challenge import ContinuedFlight, against, dated
 from game.scenes.play.daily import DailyStart
@@ -25,7 +26,7 @@ def day(context: Context) -> PlayScene:
 
 def descent(context: Context) -> PlayScene:
     """Fly from pad to pad."""
-    return PlayScene(context, challenge=Descent())
+    return PlayScene(context, challenge=Descent(best_descent(Records(context.user_dir).entries())))
 
 
 def race(context: Context, record: Record, rival: str = "") -> PlayScene:

@@ -7,26 +7,28 @@ line beside it names the key that it waits for.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Final
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import FIRST
 from game.core import texts
-from game.core.settings import Settings
 from game.explain.readouts import yours
 from game.flight.choosers import Crew
-from game.flight.credit import Credit
-from game.flight.flight import Flight, Recording, StickHolder, begin
+from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.networks import Policy, QPolicy, sentence, who
 from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
-from game.scenes.play.challenge import Challenge
+from game.scenes.play.challenge import Challenge, Start, Wanted, Words
 from game.scenes.play.words import falls_too_fast, leaves_at_the_top, turned
+
+if TYPE_CHECKING:
+    from game.scenes.play.flown_flight import FlownFlight
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
 _LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
@@ -101,15 +103,13 @@ class Tutorial(Challenge):
     """Tutorial: the first flight.
 
     Attributes:
-        through: whether all lessons are done or skipped.
         flown: whether the last lesson was completed by a landing.
         praise: number of steps for which the last lesson is still praised.
 
     """
 
-    kept = False
-
     def __init__(self) -> None:
+        super().__init__(kept=False, again=True, skip=self.skip)
         self._lessons = list(LESSONS)
         self.flown = self._saved = False  # saved: whether a guard has kept the present flight from a crash
         self._begin_lesson(0)
@@ -121,35 +121,37 @@ class Tutorial(Challenge):
     def _begin_lesson(self, number: int) -> None:
         self._number, self._over = number, False
         self._flown_for = self._done_for = self.praise = self._begun = 0
-        self.word()
-
-    def word(self) -> None:
-        self.title, self.next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
         self._why = ""
-        self._count()
+        self._rule()
 
-    def _count(self) -> None:
-        self.line = texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
-        self.guides = self.lesson.guarded
+    def _rule(self) -> None:
+        """Set the rules of the lesson. A guard is shown only to who keeps the stick."""
+        guarded = self.lesson.guarded
+        self.rules.guides = self.rules.holds = guarded
+        self.rules.keeps_stick = guarded and not self.rules.through
+        self.rules.waits = not self.lesson.hands_off
 
     def _end(self) -> None:
         """Let free flights follow."""
-        self.through, self.fixed = True, False
+        self.rules.through, self.rules.fixed, self.rules.again, self.rules.keeps_stick = True, False, False, False
 
-    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight[Crew]:
-        """Begin a flight at the current lesson, or one before it; without a network, leave out what needs one."""
-        self._leave_out(network)
+    def start(self, wanted: Wanted) -> Start:
+        """Begin at the current lesson, or one before it; without a network, leave out what needs one."""
+        self._leave_out(wanted.network)
         self._number -= self.lesson.back
-        self._count()
+        self._rule()
         self._begun += 1
         self._done_for = self.praise = self._flown_for = 0
         self._over = self._saved = False
-        flight = begin(Recording(seed, "random", mission=FIRST.name), network, shares=self.lesson.guarded)
+        return Start(
+            Recording(wanted.seed, "random", mission=FIRST.name), shares=self.lesson.guarded, place=self._place
+        )
+
+    def _place(self, flight: Flight[Any]) -> None:
         height, sinks, angle, aside = self.lesson.start
         flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, angle, 0.0]]))
         flight.observation = flight.env.observe()
         flight.rest()
-        return flight
 
     def _leave_out(self, network: Policy | None) -> None:
         """Leave out, at any point of the tutorial, the lessons that the network there is cannot take part in."""
@@ -161,24 +163,22 @@ class Tutorial(Challenge):
         if not ahead:
             self._end()
 
-    @property
-    def waits(self) -> bool:
-        return not self.lesson.hands_off
-
-    @property
-    def holds(self) -> bool:
-        """The craft goes on to hang until help is turned on, where a lesson asks for that."""
-        return self.lesson.guarded and self._help is not None and self._help.help == "off"
-
-    def keeps_stick(self, flight: Flight[Crew]) -> bool:
-        """A guard is shown only to who keeps the stick; what the network has taken over may be taken back."""
-        return self.lesson.guarded and not self.through and flight.chooser.hand is StickHolder.HUMAN
-
     # Progress
+
+    def stepped(self, flown: FlownFlight) -> str:
+        """Check whether the lesson is done, and keep that the tutorial is over, so that it is not offered again."""
+        sound, settings = self.follow(flown.flight), flown.context.settings
+        if self.flown and not settings.first_flown:
+            settings.first_flown = True
+            settings.help = "guard" if settings.help == "off" else settings.help  # as it is taught next
+        if (self.rules.through or self.flown) and not settings.tutored:
+            settings.tutored = True
+            flown.context.apply_settings()
+        return sound
 
     def follow(self, flight: Flight[Crew]) -> str:
         """Check whether the lesson is done; return the sound to play if so."""
-        if self.through:
+        if self.rules.through:
             return ""
         self._leave_out(flight.chooser.network)
         if flight.over and not self._over:
@@ -226,42 +226,40 @@ class Tutorial(Challenge):
             self._end()
         self._begin_lesson(self._number + beyond)
 
-    def leave(self) -> None:
-        self._end()
+    def ended(self, flown: FlownFlight) -> None:
+        """Keep nothing."""
 
-    def again(self) -> bool:
-        """A flight restarts unless it was the landing that the last lesson asks for."""
-        return not self.through
-
-    def remember(self, settings: Settings) -> bool:
-        """Store that the tutorial is over, so that it is not offered again, and whether it was flown."""
-        before = settings.tutored, settings.first_flown
-        if self.flown and not settings.first_flown and settings.help == "off":
-            settings.help = "guard"  # as it is taught next
-        settings.tutored |= self.through or self.flown
-        settings.first_flown |= self.flown
-        return before != (settings.tutored, settings.first_flown)
-
-    def card(self, card: OutcomeCard, flight: Flight[Crew], credit: Credit) -> OutcomeCard:
-        """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
+    def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
+        """Make the final card: tutorial complete, or the crash of a player who flies it once more."""
+        flight, card.score = flown.flight, ""
         if not card.good:
-            return replace(card, score="")
-        title, reason = texts.TUTORIAL_DONE, texts.TUTORIAL_DONE_REASON
+            return
+        card.title, card.reason, card.advice = texts.TUTORIAL_DONE, texts.TUTORIAL_DONE_REASON, texts.TUTORIAL_NEXT
+        if not self.lesson.guarded:
+            return
         if card.stepped_in:
-            title, reason = texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED
-        elif self.lesson.guarded and flight.share < 1:
-            title = texts.TUTORIAL_GOOD["land"]
-            reason = texts.TUTORIAL_HELPED.format(who=who(flight.chooser.network), percent=100 - yours(flight.share))
-        elif self.lesson.guarded:
-            reason = texts.TUTORIAL_NOT_NEEDED
-        quality = card.quality if flight.share == 1 or not self.lesson.guarded else ""
-        return replace(card, title=title, reason=reason, quality=quality, score="", advice=texts.TUTORIAL_NEXT)
+            card.title, card.reason = texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED
+        elif flight.share < 1:
+            card.title, percent = texts.TUTORIAL_GOOD["land"], 100 - yours(flight.share)
+            card.reason = texts.TUTORIAL_HELPED.format(who=who(flight.chooser.network), percent=percent)
+        else:
+            card.reason = texts.TUTORIAL_NOT_NEEDED
+        card.quality = card.quality if flight.share == 1 else ""
 
     # In words
 
+    def words(self, flown: FlownFlight) -> Words:
+        flight, waiting = flown.flight, flown.waiting and not flown.flight.over
+        said = self.sentence(flight, flown.context.controls, waiting=waiting, stuck=flown.stuck)
+        line = texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
+        asides = [self.why] if self.why and not flight.wrecked else []
+        following = "" if self.rules.through else texts.TUTORIAL_SKIP
+        card = partial(self._add_to, flown)
+        return Words(texts.TUTORIAL_TITLE, line, sentence=said, asides=asides, next=following, card=card)
+
     def sentence(self, flight: Flight[Crew], controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
         """Return the instruction, in the key names of the device in use."""
-        if flight.over and self.through:
+        if flight.over and self.rules.through:
             return ""
         left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
         turn = texts.TUTORIAL_EITHER.format(left=left, right=right)
@@ -288,7 +286,7 @@ class Tutorial(Challenge):
                 return texts.TUTORIAL_WATCHED
             return texts.TUTORIAL_GOOD[lesson.name] if self.praise else texts.TUTORIAL_AGAIN
         if waiting and lesson.guarded:
-            return usual if self.holds else texts.TUTORIAL_PATHS
+            return usual if flight.chooser.copilot and not flight.chooser.copilot.assist else texts.TUTORIAL_PATHS
         if stuck:
             return usual if lesson.hands_off else texts.TUTORIAL_LET_GO
         if waiting and lesson.name == "land":  # the lesson's own line names no key that starts the flight
@@ -324,6 +322,3 @@ class Tutorial(Challenge):
     def why(self) -> str:
         """Return why the lesson restarts, until it has flown for a while; empty if it has not restarted."""
         return self._why if self._over or self._flown_for < _WHY_SHOWN else ""
-
-    def asides(self, flight: Flight[Crew]) -> Sequence[str]:
-        return [self.why] if self.why and not flight.wrecked else []

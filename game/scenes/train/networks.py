@@ -11,8 +11,8 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition, push
+from game.core.shelf import LibraryError
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.flight import networks

@@ -1,7 +1,7 @@
 """Hand on a lander: while Watch is stopped, the shown lander can be placed, tilted and thrown.
 
-A ring around it is what to drag, a dot on the ring is its tilt, and an arrow its speed. By keys and gamepad the hand is
-a widget: Enter or A takes hold of the place, then of the tilt, then of the speed, and the arrows change it.
+A ring around it is what to drag, a dot on the ring is its tilt, and an arrow its speed. Keys and gamepad drag with a
+pointer of their own.
 """
 
 from __future__ import annotations
@@ -13,12 +13,11 @@ import numpy as np
 import pygame
 
 from game.core import texts
-from game.drawing.canvas import PAGE, Align, Canvas, Point
+from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL
-from game.input.controls import Command, Controls, translate
+from game.input.controls import Controls
 from game.ui.hints import Hint
-from game.ui.virtual_pointer import HeldDirections
-from game.ui.widget import Widget
+from game.ui.virtual_pointer import VirtualPointer
 
 if TYPE_CHECKING:
     from ai.environment import Doubles
@@ -26,53 +25,48 @@ if TYPE_CHECKING:
 
 PLACE, TILT, SPEED = range(3)
 FASTEST: Final = 8.0  # m/s
-NOTCH: Final = math.radians(5.0)  # of the wheel, of Q and E, and of a shoulder button
+NOTCH: Final = math.radians(5.0)  # of the wheel
 _RING: Final = 1.5  # radius in metres of a lander of full size
 _LEAST: Final = 36.0  # and at least, in points
 _ARROW: Final = 12.0  # points between the ring and the arrow
 _PER_SPEED: Final = 22.0  # points of the arrow for each m/s
 _REACH: Final = 16.0  # points from a knob within which it is taken
-_PACE: Final = (0.05, math.radians(1.0), 0.05)  # metres, radians and m/s in an update, while an arrow is held
-_SHOULDERS: Final = {Command.PREVIOUS: 1, Command.NEXT: -1}
-_LEAVE: Final = (Command.BACK, Command.PAUSE, Command.UNPLUGGED)
-_ASIDE, _HEAD, _FOOT = 40, 100, 110  # points from the edges of the view, within which the focus on it is seen
 
 
-class Hand(Widget):
+class Hand(VirtualPointer):
     """The player's hand on the shown lander, by mouse, keys or gamepad.
 
     Attributes:
-        part: what it holds: PLACE, TILT or SPEED.
-        dragging: whether the mouse holds it.
+        part: what it holds, or held last: PLACE, TILT or SPEED.
+        dragging: whether it holds it.
 
     """
 
-    def __init__(self, lander: Watched, clear: pygame.Rect, view: pygame.FRect = PAGE) -> None:
-        super().__init__(clear, texts.TOUCH_LANDER)
-        self._lander, self._clear, self._view = lander, clear, view
+    follows_mouse = False
+
+    def __init__(self, lander: Watched) -> None:
+        super().__init__((0, 0, 1, 1), self._point, hold=texts.TOUCH_DRAG, leave=texts.TOUCH_LEAVE, pace=4.0)
+        self.key = "hand"
+        self._lander = lander
         self.part, self.dragging = PLACE, False
-        self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points
-        self._held = HeldDirections()
+        self._grip: Point = (0.0, 0.0)  # from the pointer to what it holds, in points
+        self._pointer: Point | None = None  # where the keys' own pointer is
+
+    def reach(self, free: pygame.FRect) -> None:
+        """Let it put the lander anywhere in this part of the window, in points."""
+        self.rect = self.relative_rect = pygame.Rect(free)
 
     # Where it is, in points
 
     @property
-    def box(self) -> pygame.Rect:
-        """The box of the ring, kept where it is seen between words and read-outs, for the focus to find."""
-        left, top, width, height = self._view
-        sky = pygame.Rect(left + _ASIDE, top + _HEAD, width - 2 * _ASIDE, height - _HEAD - _FOOT)
-        return pygame.Rect(_around(self.middle, self.radius)).clamp(sky)
-
-    @property
     def middle(self) -> Point:
         """Middle of the ring."""
-        x, y = self._lander.hand_view().points(self._lander.state[:2]).tolist()
-        return x, y
+        return self._lander.place(self._lander.state[:2])
 
     @property
     def radius(self) -> float:
         """Radius of the ring."""
-        return max(_LEAST, _RING * self._lander.hand_view().pixels_per_metre * self._lander.size)
+        return max(_LEAST, _RING * self._lander.points_per_metre * self._lander.size)
 
     @property
     def tilt_knob(self) -> Point:
@@ -90,13 +84,9 @@ class Hand(Widget):
         tip = tail + _PER_SPEED * min(speed, FASTEST)
         return (x + tail * way[0], y + tail * way[1]), (x + tip * way[0], y + tip * way[1])
 
-    def used(self, pointer: Point | None) -> bool:
-        """Whether it holds the lander, or the mouse points at a part to take."""
-        return self.dragging or self.typing or (pointer is not None and self.part_at(pointer) is not None)
-
     def part_at(self, point: Point) -> int | None:
         """Return the part that the mouse would take at a point, if any."""
-        if not self._lander.at_hand:
+        if not (self._lander.at_hand and self.box.collidepoint(point)):
             return None
         if math.dist(point, self.tilt_knob) <= _REACH:
             return TILT
@@ -134,7 +124,7 @@ class Hand(Widget):
         (x, y), held = self.middle, (point[0] + self._grip[0], point[1] + self._grip[1])
         right, down = held[0] - x, held[1] - y
         if self.part == PLACE:
-            self._put(place=self._lander.hand_view().metres(held))
+            self._put(place=self._lander.metres(held))
         elif self.part == TILT:
             self._put(angle=math.atan2(-right, -down))
         else:
@@ -151,8 +141,8 @@ class Hand(Widget):
         x, y = (x, y) if place is None else place
         across, up = (across, up) if velocity is None else velocity
         lean, spin = (lean, spin) if angle is None else (angle, 0.0)
-        clear, env = self._clear, self._lander.env
-        (left, top), (right, _) = self._lander.hand_view().metres([clear.topleft, clear.bottomright]).tolist()
+        clear, env = self.box, self._lander.env
+        (left, top), (right, _) = map(self._lander.metres, (clear.topleft, clear.bottomright))
         x = min(max(x, left, -env.limits.half_width), right, env.limits.half_width)
         y = max(min(y, top, env.limits.ceiling), env.lowest(x, lean))
         self._lander.touch(np.array([x, y, across, up, lean, spin]))
@@ -160,103 +150,52 @@ class Hand(Widget):
     # By keys and gamepad
 
     def press(self) -> None:
-        """Take hold of the lander, unless a real mouse is in use."""
-        if self.ringed:
-            self.hold()
-
-    def hold(self) -> None:
-        """Stop, and let the arrows move the lander."""
+        """Take keys and gamepad, with their pointer on the lander."""
         self._lander.playback.stopped = True
-        self.typing, self.part = True, PLACE
-
-    def hints(self, controls: Controls) -> list[Hint]:
-        """Return the hints while the hand holds the lander."""
-        back, turns = "Z", "Q E"
-        if controls.gamepad_in_use:
-            back, turns = controls.word(Command.RETRY), " ".join(map(controls.word, _SHOULDERS))
-        undo = [Hint(back, texts.HINT_UNTOUCH, self._lander.untouch)] if self._lander.can_untouch else []
-        return [
-            Hint(controls.arrows, texts.TOUCH_PARTS[self.part]),
-            Hint(controls.word(Command.CONFIRM), texts.TOUCH_NEXT, self._next_part),
-            Hint(turns, texts.TOUCH_PARTS[TILT]),
-            *undo,
-            Hint(controls.word(Command.BACK), texts.TOUCH_LEAVE, self._let_go),
-        ]
+        if self.box.collidepoint(self.middle):
+            self.place.update(self.middle)
+        super().press()
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Change the lander while it is held; what is no business of the hand is left to the scene."""
-        if not self.typing:
-            return False
-        code, command = getattr(event, "key", getattr(event, "button", None)), translate(event)
-        by_pad = event.type == pygame.CONTROLLERBUTTONDOWN
-        if event.type in (pygame.KEYUP, pygame.CONTROLLERBUTTONUP):
-            return self._held.release(code)
-        if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
-            self._let_go()
-            return False
-        if self._held.tilt(event) or self._held.press(code, command):
-            return True
-        if command is Command.CONFIRM:
-            self._next_part()
-        elif by_pad and command in _SHOULDERS:
-            self.turn(_SHOULDERS[command])
-        elif by_pad and command is Command.RETRY:
-            self._lander.untouch()
-        elif command in _LEAVE:
-            self._let_go()
-        else:
-            return False
-        return True
+        """Leave Space to the scene, which goes on with it."""
+        return not (event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE) and super().take(event)
 
-    def _next_part(self) -> None:
-        self.part = (self.part + 1) % 3
+    def hints(self, controls: Controls) -> list[Hint]:
+        go_on = Hint(controls.key_word(None, pygame.K_SPACE), texts.HINT_GO, self._lander.playback.toggle)
+        return [*super().hints(controls), go_on]
 
-    def _let_go(self) -> None:
-        self.typing = self.dragging = False
-        self._held.clear()
+    def _point(self, event: pygame.event.Event) -> None:
+        self._pointer = event.pos
+        self.mouse(event)
 
     def ease(self, at_once: bool) -> None:
-        """Change what is held by as much as the arrows, held down, do in 1/60 s."""
         super().ease(at_once)
-        if (self.typing and not self.focused) or not self._lander.at_hand:
-            self._let_go()
-        held = self._held.stick + (self._held.arrows or (0, 0))
-        way, pace, state = np.array([held.x, -held.y]), _PACE[self.part], self._lander.state  # up is up in the world
-        if not self.typing or not way.any():
-            return
-        if self.part == PLACE:
-            self._put(place=state[:2] + pace * way)
-        elif self.part == TILT:
-            self._put(angle=float(state[4]) - pace * float(way[0] or way[1]))
-        else:
-            velocity = state[2:4] + pace * way
-            self._put(velocity=velocity * min(1.0, FASTEST / max(math.hypot(*velocity), 1e-6)))
+        if not self._lander.at_hand:
+            self.lay_aside()
+            self.dragging = False
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
         """Return False: the scene asks for the mouse itself, as what is touched lies under its words."""
         return False
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Ignore the mouse events of the form."""
-        return False
-
     # The picture
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw nothing: the scene draws the hand before its panel."""
+        """Draw nothing: the scene draws the hand before its panels."""
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the ring, the dot and the arrow while the lander can be touched; or the focus around it."""
         if self.ringed and self.warmth > 0.02:
-            canvas.outline(self.box.inflate(10, 10), 8, INK, 1, 0.4 * self.warmth)
+            canvas.outline(_around(self.middle, self.radius + 5), 8, INK, 1, 0.4 * self.warmth)
         if not self._lander.at_hand:
             return
-        held = self.part if self.dragging or self.typing else None
-        lit = self.part_at(canvas.pointer) if held is None and canvas.pointer is not None else held
+        pointer = self._pointer if self.typing else canvas.pointer
+        lit = self.part if self.dragging else self.part_at(pointer) if pointer is not None else None
         ring = _around(self.middle, self.radius)
         canvas.outline(ring, self.radius, HUMAN, 1, 0.9 if lit == PLACE else 0.45)
         self._draw_tilt(canvas, lit == TILT)
         self._draw_arrow(canvas, lit == SPEED)
+        self.draw_pointer(canvas)
 
     def _draw_tilt(self, canvas: Canvas, lit: bool) -> None:
         x, y = self.tilt_knob
@@ -275,8 +214,7 @@ class Hand(Widget):
             across, down = (np.array(tip) - 9 * way + side * 5 * np.array([-way[1], way[0]])).tolist()
             canvas.line(tip, (across, down), HUMAN, width)
         speed = math.hypot(*self._lander.state[2:4])
-        lowest = self._view.bottom - _FOOT  # read-outs are below
-        place = (tip[0] + 10 * float(way[0]), min(tip[1] + 16 * float(way[1]) + 4, lowest))
+        place = (tip[0] + 10 * float(way[0]), min(tip[1] + 16 * float(way[1]) + 4, self.box.bottom - 4.0))
         align: Align = "centre" if abs(way[0]) < 0.4 else "left" if way[0] > 0 else "right"
         canvas.text(texts.TOUCH_SPEED.format(speed=speed), place, size=SMALL, colour=HUMAN, align=align, tabular=True)
 

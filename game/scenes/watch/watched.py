@@ -13,28 +13,26 @@ from ai.lander.environment import LanderEnv, Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
-from game.scenes.watch.decision_panel import PANEL
 from game.scenes.watch.policy_map import PolicyMap
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
 from game.world.camera import Camera, CameraTarget, ClearArea, View
 from game.world.craft import draw_crowd
-from game.world.landscape.backdrop import landscape
+from game.world.landscape.backdrop import EARTH, EARTH_RADIUS, landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
 from game.world.scenery import mark_lost
 from game.world.stage import Stage
 
-SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
+SPEEDS: Final = (0.25, 1.0, 4.0)
 MANY: Final = 64  # landers, if there is more than one
 _SMALL: Final = 0.46  # size of each of many, to be seen through
-_CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
-_WHOLE_SKY: Final = CameraTarget.around(-17.0, 17.0, 17.0, ClearArea(right=PANEL.left))  # beside the panel, for a map
+_SKY: Final = (-17.0, 17.0, 17.0)  # metres from left to right and up, that a camera at rest shows
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
@@ -48,6 +46,7 @@ class Watched:
         shown: number of the lander whose decisions are shown.
         playback: the clock; while it is stopped, the shown lander can be touched.
         policy_map: colours of the sky.
+        free: what words leave free of the window, in points.
 
     """
 
@@ -57,6 +56,7 @@ class Watched:
         self._clock = TimeScale()
         self.playback = Playback(self._clock, SPEEDS, self.fly_to_the_next_decision)
         self.shown, self._time = 0, 0.0
+        self.free = context.reading().view
 
     def begin(self, many: bool, seed: int, policy: Policy) -> None:
         """Begin anew with one lander, or many."""
@@ -93,12 +93,10 @@ class Watched:
         return 1.5 * _SMALL if self.many else 1.0
 
     def set_up_camera(self) -> None:
-        """Let the camera follow a single lander; with several, a map or reduced motion it rests."""
+        """Let the camera follow a single lander; with several, a map or reduced motion it rests on the whole sky."""
         self.camera, self.stage.calm = Camera(), self._context.settings.reduced_motion
-        if self.policy_map.on:
-            self.camera.cut(_WHOLE_SKY)
-        elif self._follows:
-            self.camera.cut(framing.framed(self.env, clear=_CLEAR))
+        sky = CameraTarget.around(*_SKY, self.clear)
+        self.camera.cut(framing.framed(self.env, clear=self.clear) if self._follows else sky)
 
     @property
     def _follows(self) -> bool:
@@ -123,7 +121,7 @@ class Watched:
         self.stage.follow(np.ones(swarm.env.num_envs, bool), ended)
         self.trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
         if self._follows:
-            framing.follow(self.camera, swarm.env, clear=_CLEAR)
+            framing.follow(self.camera, swarm.env, clear=self.clear)
 
     def fly_to_the_next_decision(self) -> None:
         """Fly until the shown lander's next decision; the others fly on while it rests after a flight."""
@@ -137,7 +135,7 @@ class Watched:
 
     def nearest(self, point: tuple[float, float]) -> int | None:
         """Return the lander nearest to a point of the canvas; None if none is close."""
-        distance = np.hypot(*(self.env.position - self.hand_view().metres(point)).T)
+        distance = np.hypot(*(self.env.position - self.metres(point)).T)
         slot = int(distance.argmin())
         return slot if distance[slot] <= _CLICK_REACH else None
 
@@ -169,9 +167,34 @@ class Watched:
         """The tilt of the shown lander."""
         return texts.TOUCH_TILT.format(tilt=math.degrees(float(self.env.tilt[self.shown])))
 
-    def hand_view(self) -> View:
-        """Return the view, in points."""
-        return self.camera.view(1.0).lowered(self._context.view)
+    # Where it is, in points
+
+    @property
+    def clear(self) -> ClearArea:
+        """The part of the world that is kept clear for what flies."""
+        return ClearArea.of(self._context.reading(), self.free)
+
+    def _world(self, canvas: Canvas) -> Canvas:
+        return canvas.above(canvas.view.bottom - self.free.bottom)
+
+    def _view(self, world: Canvas, between: float = 1.0) -> View:
+        return self.camera.view(world.scale, between).filling(world)
+
+    def place(self, position: Doubles) -> Point:
+        """Return where a place of the world, in metres, is seen."""
+        canvas = self._context.reading()
+        return canvas.points(self._view(self._world(canvas)).pixel(*position.tolist()))
+
+    def metres(self, point: Point) -> Doubles:
+        """Return the place of the world that is seen at a point."""
+        canvas = self._context.reading()
+        world = self._world(canvas)
+        return self._view(world).metres(world.points(canvas.pixels(point)))
+
+    @property
+    def points_per_metre(self) -> float:
+        canvas = self._context.reading()
+        return self._view(self._world(canvas)).pixels_per_metre / canvas.scale
 
     def touch(self, start: Doubles) -> None:
         """Let the shown lander fly on from another state: x, y, vx, vy, angle, spin."""
@@ -200,15 +223,16 @@ class Watched:
 
     def draw(self, canvas: Canvas, between: float) -> None:
         """Draw the world, the map and the swarm."""
-        calm = self._context.settings.reduced_motion
-        view, size = self.camera.view(canvas.scale, between).filling(canvas), _SMALL if self.many else 1.0
-        landscape(canvas.surface.get_size(), calm, "moon").draw(canvas, self.camera, self._time, between)
+        calm, canvas = self._context.settings.reduced_motion, self._world(canvas)
+        view, size = self._view(canvas, between), _SMALL if self.many else 1.0
+        backdrop, earth = landscape(canvas.surface.get_size(), calm, "moon"), self.clear.earth(EARTH, EARTH_RADIUS)
+        backdrop.draw(canvas, self.camera, self._time, between, earth)
         self.policy_map.draw(canvas, view)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
         draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
-        self.trails.draw(canvas, view, self.shown, _CLEAR.head)
+        self.trails.draw(canvas, view, self.shown, self.clear.head)
         draw_crowd(canvas, view, poses[others], size)
         self._draw_shown(canvas, view, poses[self.shown])
         self.stage.draw_dust(canvas, view, between)

@@ -11,7 +11,7 @@ import pytest
 from ai.sweep import cluster
 from ai.sweep.study import Study
 from main import main
-from tests.support.studies import made_study, tiny_plan
+from tests.support.studies import made_study, tiny_design
 
 
 @pytest.fixture
@@ -64,11 +64,11 @@ def test_what_makes_no_sense_is_one_sentence_and_nothing_is_written(tmp_path, ca
 
 
 @pytest.mark.skipif(find_spec("ray") is None, reason="needs the extra: sweep")
-def test_a_study_that_has_begun_keeps_its_plan(study, tmp_path, capsys):
+def test_a_study_that_has_begun_keeps_its_design(study, tmp_path, capsys):
     user = ("--user-dir", tmp_path / "user", "sweep", "--study", "mine")
     assert "--metric, --set" in refused(capsys, *user, "--resume", "--metric", "mean", "--set", "tau=1")
     assert "--resume goes on" in refused(capsys, *user)
-    assert Study.load(study.folder).plan == study.plan
+    assert Study.load(study.folder).design == study.design
 
 
 @pytest.fixture
@@ -76,10 +76,10 @@ def evil(tmp_path, monkeypatch):
     """Another's study whose environment is a module that lies beside it, and leaves a trace when it is imported."""
     (tmp_path / "evilcwd.py").write_text(f"open({str(tmp_path / 'trace')!r}, 'w').close()\n")
     monkeypatch.syspath_prepend(tmp_path)
-    study = Study.create(tmp_path / "study", tiny_plan())
+    study = Study.create(tmp_path / "study", tiny_design())
     file = study.folder / "study.json"
     saved = json.loads(file.read_text())
-    saved["plan"]["settings"]["env"] = "evilcwd:X-v0"
+    saved["design"]["settings"]["env"] = "evilcwd:X-v0"
     file.write_text(json.dumps(saved))
     yield study.folder
     sys.modules.pop("evilcwd", None)
@@ -102,8 +102,8 @@ def test_what_a_study_lists_of_trials_starts_no_code_either(evil, tmp_path, caps
     monkeypatch.setattr(cluster, "joined", None)
     file = evil / "study.json"
     saved = json.loads(file.read_text())
-    saved["plan"]["settings"]["env"] = "CartPole-v1"
-    saved["plan"]["space"]["env"] = {"choices": ["evilcwd:X-v0"]}
+    saved["design"]["settings"]["env"] = "CartPole-v1"
+    saved["design"]["space"]["env"] = {"choices": ["evilcwd:X-v0"]}
     file.write_text(json.dumps(saved))
     assert "env cannot be searched" in refused(capsys, "sweep", "--study", f"{evil}/", "--resume")
     assert not (tmp_path / "trace").exists()

@@ -266,10 +266,8 @@ def test_a_written_file_waits_for_its_content_and_then_for_its_name(tmp_path, mo
     assert (tmp_path / "settings.json").read_text() == "[]"
 
 
-def test_json_is_nested_so_deep_and_no_deeper():
-    assert parse_json("[" * 31 + "]" * 31)
-    assert parse_json('"[[[["') == "[[[["
-    for text in ("[" * 33 + "]" * 33, '{"a":' * 33 + "1" + "}" * 33):
+def test_json_has_finite_numbers_and_an_end():
+    for text in ("[" * 100_000, '{"a":' * 100_000):
         with pytest.raises(ValueError, match="too deeply"):
             parse_json(text)
     for text in ("1e999", "Infinity", "[NaN]", "1" * 5000):

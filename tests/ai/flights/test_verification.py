@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ai.flights.code import code_of, flight_of
-from ai.flights.recording import Claim, Easing, Recording, SharedFlight, StickHolder
+from ai.flights.recording import Claim, ClaimedFlight, Easing, Recording, StickHolder
 from ai.flights.verification import (
     DAILY,
     DESCENT,
@@ -40,7 +40,6 @@ KINDS: dict[str, dict[str, Any]] = {
     "wider pads": {"easing": Easing(wider_pads=True)},
     "wider pads among hills": {"easing": Easing(wider_pads=True), "pads": 3},
     "without a time limit": {"easing": Easing(untimed=True), "mission": "wind"},
-    "an earlier area": {"area": 0},
     "a rung of the ladder": {"spawn": "rung_4"},
 }
 DAY = date(2026, 11, 22).toordinal()
@@ -64,7 +63,7 @@ def flown(kind, analogue=False):
 
 
 def claimed(recording, real, course=""):
-    return SharedFlight(recording, Claim(real.outcome, real.points, real.end), course), real
+    return ClaimedFlight(recording, Claim(real.outcome, real.points, real.end), course), real
 
 
 def test_a_code_of_every_kind_is_read_to_the_same_flight_and_earns_the_same_alone_and_in_company(subtests):

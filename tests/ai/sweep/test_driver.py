@@ -124,10 +124,10 @@ def listening(pids):
 def assert_whole(folder):
     """Every trial of a study is there once, and what Ray has brought is what this process trains, bit for bit."""
     study = Study.load(folder)
-    assert (sorted(study.trials), study.damaged) == (list(range(study.plan.trials)), [])
-    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == study.plan.trials
+    assert (sorted(study.trials), study.damaged) == (list(range(study.design.trials)), [])
+    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == study.design.trials
     number, trial = max(study.trials.items())
-    alone, files = trained(study.plan, number, trial.params)
+    alone, files = trained(study.design, number, trial.params)
     assert replace(alone, seconds=trial.seconds) == trial
     kept = study.trial_folder(number) / "seed-1" / "online"
     assert [each.read_bytes() == files[f"seed-1/online/{each.name}"] for each in kept.iterdir()] == [True] * 7

@@ -10,7 +10,7 @@ pytest.importorskip("ray")
 
 from ai.sweep import driver
 from ai.sweep.study import Study
-from tests.support.studies import made_study, result, tiny_plan
+from tests.support.studies import made_study, result, tiny_design
 
 
 def test_proposals_lie_in_the_space_and_a_study_that_goes_on_repeats_none(tmp_path):
@@ -20,7 +20,7 @@ def test_proposals_lie_in_the_space_and_a_study_that_goes_on_repeats_none(tmp_pa
         proposals = driver.Proposals(study)
         for value in (1.0, None, 3.0):
             number, params = proposals.ask()
-            study.plan.check_params(params)
+            study.design.check_params(params)
             asked.append(params)
             proposals.tell(number, value)
         study.record(result(len(study.trials)), {})
@@ -28,7 +28,7 @@ def test_proposals_lie_in_the_space_and_a_study_that_goes_on_repeats_none(tmp_pa
 
 
 def test_a_study_that_goes_on_knows_what_was_good(tmp_path):
-    study = Study.create(tmp_path / "study", tiny_plan(trials=60, metric="return"))
+    study = Study.create(tmp_path / "study", tiny_design(trials=60, metric="return"))
     for number in range(40):
         tau = 0.001 + 0.02 * number
         trial = result(number, -abs(tau - 0.1))
@@ -43,7 +43,7 @@ def workers(monkeypatch):
     """Ray whose tasks do at once what `does` says of a number."""
     begun = []
 
-    def remote(plan, number, params):
+    def remote(design, number, params):
         begun.append((number, params))
         return len(begun) - 1
 
@@ -70,7 +70,7 @@ def test_a_lost_worker_begins_its_trial_again_and_is_given_up_after_some_tries(t
         raise RayError("it died")
 
     workers.does = die
-    study = Study.create(tmp_path / "study", tiny_plan(trials=1))
+    study = Study.create(tmp_path / "study", tiny_design(trials=1))
     assert driver.run(study, 1, [], lambda _: None) == {0: "it died"}
     assert workers.begun == [workers.begun[0]] * driver.TRIES, "the same settings"
 
@@ -82,7 +82,7 @@ def test_what_a_node_lacks_is_named_and_not_tried_for_ever(tmp_path, workers):
         raise RayTaskError("trained", "", ImportError("gymnasium is missing"))
 
     workers.does = miss
-    study = Study.create(tmp_path / "study", tiny_plan(trials=50))
+    study = Study.create(tmp_path / "study", tiny_design(trials=50))
     lost = driver.run(study, 2, [], lambda _: None)
     assert set(lost.values()) == {"gymnasium is missing"}
     assert driver.MOST_LOST <= len(lost) <= driver.MOST_LOST + 1

@@ -25,7 +25,7 @@ def study(tmp_path):
 
 def test_a_study_reads_what_it_wrote_and_its_table_has_the_best_first(study):
     again = Study.load(study.folder)
-    assert (again.trials, again.plan, again.damaged) == (study.trials, study.plan, [])
+    assert (again.trials, again.design, again.damaged) == (study.trials, study.design, [])
     table = again.table()
     assert "2 of 4 trials, 2 seeds each, compared by return" in table
     assert table.index("learning_rate=0.002 tau=0.02 double=false") < table.index("learning_rate=0.001")
@@ -74,7 +74,7 @@ def test_a_damaged_trial_is_named_and_the_others_are_read_and_a_damaged_study_is
     with pytest.raises(StudyError, match="version 2"):
         Study.load(study.folder)
     with pytest.raises(StudyError, match="--resume"):
-        Study.create(study.folder, study.plan)
+        Study.create(study.folder, study.design)
 
 
 def test_a_trial_of_other_settings_or_seeds_or_with_a_value_out_of_nowhere_is_damaged(study):

@@ -7,27 +7,27 @@ import pytest
 
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
-from ai.sweep.plan import Plan, knob_space
+from ai.sweep.design import Design, knob_space
 from ai.sweep.study import Study
 from ai.sweep.trial import trained
 from ai.training.run import save
 from main import main
-from tests.support.studies import TINY, networks_in, tiny_plan
+from tests.support.studies import TINY, networks_in, tiny_design
 
 PARAMS = {"learning_rate": 0.002, "tau": 0.02, "double": True}
 
 
-def recorded(folder, plan, params):
+def recorded(folder, design, params):
     """Train a trial in this process, and keep it in a study."""
-    study = Study.create(folder, plan)
-    study.record(*trained(plan, 0, params))
+    study = Study.create(folder, design)
+    study.record(*trained(design, 0, params))
     assert Study.load(folder).trials == study.trials
     return study
 
 
 @pytest.mark.slow
 def test_a_trials_run_is_that_of_train_bit_for_bit(tmp_path):
-    study = recorded(tmp_path / "study", tiny_plan(), PARAMS)
+    study = recorded(tmp_path / "study", tiny_design(), PARAMS)
     changes = [f"{name}={list(value) if isinstance(value, tuple) else value}" for name, value in TINY.items()]
     changes += ["learning_rate=0.002", "tau=0.02", "double=true"]
     sets = [part for change in changes for part in ("--set", change)]
@@ -41,9 +41,9 @@ def test_a_trials_run_is_that_of_train_bit_for_bit(tmp_path):
 @pytest.mark.slow
 def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=5000, epochs=1, augmentation=0.0)
-    plan = replace(Plan.of(config, knob_space(config, ["learning_rate"]), every=1, trials=1), seeds=(3,))
-    assert plan.budget == 1
-    study = recorded(tmp_path / "study", plan, {"learning_rate": 0.01})
+    design = replace(Design.of(config, knob_space(config, ["learning_rate"]), every=1, trials=1), seeds=(3,))
+    assert design.budget == 1
+    study = recorded(tmp_path / "study", design, {"learning_rate": 0.01})
     training = DigitTraining(config.changed(learning_rate=0.01), 3)
     while not training.done:
         training.advance()
@@ -59,12 +59,12 @@ def test_a_trial_of_digits_is_measured_each_epoch(tmp_path, monkeypatch):
         monkeypatch.setattr(f"ai.digits.{module}.load_part", lambda _: part)
     monkeypatch.setattr("ai.sweep.trial.load_part", lambda _: part)
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=50, epochs=2, augmentation=0.0, held_out=100)
-    plan = Plan.of(config, knob_space(config, ["learning_rate"]), every=1, trials=1, seeds=1)
-    study = recorded(tmp_path / "study", plan, {"learning_rate": 0.01})
+    design = Design.of(config, knob_space(config, ["learning_rate"]), every=1, trials=1, seeds=1)
+    study = recorded(tmp_path / "study", design, {"learning_rate": 0.01})
     (seed,) = study.trials[0].seeds
     assert [point.at for point in seed.curve] == [1, 2]
     assert study.trials[0].value == seed.curve[-1].success
-    with_none, _ = trained(replace(plan, settings=plan.settings | {"held_out": 0}), 0, {"learning_rate": 0.01})
+    with_none, _ = trained(replace(design, settings=design.settings | {"held_out": 0}), 0, {"learning_rate": 0.01})
     assert (with_none.value, with_none.seeds) == (None, ())
     assert "held_out" in with_none.problem
 
@@ -74,7 +74,7 @@ def test_settings_that_diverge_are_a_result_and_not_an_error(tmp_path, monkeypat
         raise FloatingPointError("the loss is not finite")
 
     monkeypatch.setattr("ai.sweep.trial._trained_to", diverge)
-    study = recorded(tmp_path / "study", tiny_plan(metric="success"), PARAMS)
+    study = recorded(tmp_path / "study", tiny_design(metric="success"), PARAMS)
     trial = study.trials[0]
     assert (trial.value, trial.seeds[0].problem) == (0.0, "the loss is not finite")
     assert study.best_run(trial) is None, "no run has come to its end"

@@ -41,7 +41,7 @@ def test_a_setting_out_of_range_is_named(subtests):
         ({"hidden": (True, 8)}, r"hidden\[0\]: true is no whole number"),
         ({"hidden": ("64",)}, r"hidden\[0\]: '64' is no whole number"),
         ({"schedule_decisions": 10**400}, "schedule_decisions lies between .* not 1000+…"),
-        ({"schedule_decisions": 10**5000}, "schedule_decisions lies between .* not a number of very many digits"),
+        ({"schedule_decisions": 10**5000}, "schedule_decisions lies between .* not something very large"),
         ({"env": None}, "env: null is no text"),
         ({"spawn": "x" * 100_000}, "spawn is one of .*x{20}…$"),
         ({"reward_weights": RewardWeights(time=True)}, r"reward_weights\.time: true is no finite number"),

@@ -8,7 +8,9 @@ from ai.nn import ModelFormatError
 from ai.training import history as module
 from ai.training.history import (
     CAPACITY,
+    CHECKPOINTS_FILE,
     COLUMNS,
+    CURVES_FILE,
     HISTORY_FILE,
     MOST_CHECKPOINTS,
     Checkpoint,
@@ -123,44 +125,64 @@ def test_a_run_without_a_history_has_an_empty_one(tmp_path):
 
 
 def rewritten(folder, **changes):
-    """Change arrays, or what is said of them; None takes it away."""
-    with np.load(folder / HISTORY_FILE) as arrays:
-        kept = dict(arrays)
-    described = json.loads(str(kept["described"])) | {name: each for name, each in changes.items() if name not in kept}
-    kept["described"] = np.array(json.dumps({name: each for name, each in described.items() if each is not None}))
-    np.savez(folder / HISTORY_FILE, **kept | {name: each for name, each in changes.items() if name in kept})
+    """Change what is said of a history, or its "curves", a text, or its "values"."""
+    if "curves" in changes:
+        (folder / CURVES_FILE).write_text(changes.pop("curves"))
+    if "values" in changes:
+        np.savez(folder / CHECKPOINTS_FILE, values=changes.pop("values"))
+    if changes:
+        (folder / HISTORY_FILE).write_text(json.dumps(json.loads((folder / HISTORY_FILE).read_text()) | changes))
+
+
+HEADER = ",".join(COLUMNS)
+ROW = ",".join(["1.0"] * len(COLUMNS))
 
 
 def test_nonsense_is_named(tmp_path, subtests):
-    moment = {"seconds": 1.0, "decisions": 3, "success": 0.5, "scale": None}
+    moment = {"seconds": 1.0, "decisions": 3, "success": 0.5, "normalizer": None}
     for changes in [
-        {"version": 99}, {"stride": 0}, {"told": 1}, {"stride": "x"},
+        {"version": 1}, {"stride": 0}, {"appended": 1}, {"stride": "x"},
         *({"reward_scale": scale} for scale in (-1.0, float("nan"), float("inf"), "much")),
-        {"points": np.zeros((3, 2))}, {"points": np.zeros((CAPACITY + 1, len(COLUMNS)))},
+        {"curves": ""}, {"curves": f"{HEADER}\n1,2,3"}, {"curves": f"{HEADER}\n{ROW}\n1,2"},
+        {"curves": f"{HEADER}\n{ROW},1"}, {"curves": f"{HEADER}\n{ROW.replace('1.0', 'x', 1)}"},
+        {"curves": "\n".join([HEADER, *[ROW] * (CAPACITY + 1)]), "appended": 10**6},
         {"values": np.full((2, 7), np.nan, np.float32)}, {"values": np.zeros((1, 7), np.float32)},
         {"validations": [[1, 2]]},
         {"validations": [{"decisions": 3, "success": "x", "mean_return": 1.0, "best": True}]},
         {"checkpoints": 5},
         *({"checkpoints": [moment | wrong] * 2}
-          for wrong in ({"decisions": "many"}, {"seconds": []}, {"success": 10**400}, {"scale": 7})),
-        {"alterations": [{"decisions": 3}]},
-        {"alterations": [{"decisions": 3, "name": 5, "before": 1, "after": 2}]},
-        {"alterations": [{"decisions": 3, "name": "care", "before": 1, "after": {}}]},
-        {"described": np.array("[]")},
+          for wrong in ({"decisions": "many"}, {"seconds": []}, {"success": 10**400}, {"normalizer": 7})),
+        {"changes": [{"decisions": 3}]},
+        {"changes": [{"decisions": 3, "name": 5, "before": 1, "after": 2}]},
+        {"changes": [{"decisions": 3, "name": "care", "before": 1, "after": {}}]},
     ]:  # fmt: skip
         with subtests.test(changes=changes):
             full_history().write(tmp_path)
             rewritten(tmp_path, **changes)
-            with pytest.raises(ModelFormatError, match=HISTORY_FILE):
+            with pytest.raises(ModelFormatError, match=r"history\.json|curves\.csv|checkpoints\.npz"):
                 History.read(tmp_path)
 
 
 def test_curves_of_other_columns_are_refused(tmp_path):
     for columns in ([*COLUMNS[:-1], "gone"], [*COLUMNS, "more"], COLUMNS[::-1]):
         full_history().write(tmp_path)
-        rewritten(tmp_path, columns=columns)
+        rewritten(tmp_path, curves=",".join(columns))
         with pytest.raises(ModelFormatError, match="of another version"):
             History.read(tmp_path)
+
+
+def test_a_history_of_another_version_is_refused_by_name_and_left(tmp_path):
+    (tmp_path / "history.npz").write_bytes(b"of before")
+    with pytest.raises(ModelFormatError, match=r"history\.npz was saved by another version, and is left as it is"):
+        History.read(tmp_path)
+    assert (tmp_path / "history.npz").read_bytes() == b"of before"
+
+
+def test_curves_are_a_table_that_any_program_opens(tmp_path):
+    full_history().write(tmp_path)
+    table = np.genfromtxt(tmp_path / CURVES_FILE, delimiter=",", names=True)
+    assert table.dtype.names == COLUMNS
+    assert table["decisions"].tolist() == list(range(10))
 
 
 def test_a_history_knows_in_which_unit_its_values_are(tmp_path):

@@ -13,7 +13,7 @@ from game.flight.credit import ASSISTS, Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.logbook import Records
 from game.flight.networks import DECISION_STEPS
-from game.scenes.play.challenge import Challenge
+from game.scenes.play.challenge import Rules
 from game.scenes.play.interventions import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
@@ -62,7 +62,7 @@ def keys(seed: int, steps: int) -> list[int]:
 
 def test_who_flies_is_said_by_the_word_of_the_help():
     flight = begun(1, Wants())
-    credit = Credit(flight, Settings(), Challenge())
+    credit = Credit(flight, Settings(), Rules())
     for word, assist in (("guard", ASSISTS["guard"]), ("guard", 0.3), ("guide", ASSISTS["guide"])):
         flight.chooser.help(assist)
         assert credit.header == texts.YOU_SHARE[word]
@@ -242,7 +242,7 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
     driver = fly(open_game, context, help="guide")
     start_at(driver, 0, 5, 0, -1.0, 0, 0)
     down(driver, pygame.K_RIGHT)
-    driver.frames(3)
+    driver.frames(12)
     driver.app.context.settings.help = "off"
     up(driver, pygame.K_RIGHT)
     start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
@@ -279,4 +279,4 @@ def test_words_that_nobody_knows_in_the_settings_fly_as_usual(open_game: Open, c
     assert not play(driver).flight.chooser.shared
     assert driver.app.canvas.zoom == 1.0
     driver.key(pygame.K_c)
-    assert driver.top_name == "ChoicesScene"
+    assert driver.top_name == "FlightPauseScene"

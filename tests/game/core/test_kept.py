@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from game.core.kept import Kept
+from game.core.shelf import Kept
 
 
 def test_it_is_read_once_until_a_file_changes(tmp_path: Path):

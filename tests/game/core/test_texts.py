@@ -142,10 +142,10 @@ def test_faults_of_a_language_are_found():
     cases: list[tuple[dict[str, str | tuple[str, ...]], str]] = [
         ({"SCREENSHOT_SAVED": "Bild gespeichert: {pfad}"}, "braces"),
         ({"SCREENSHOT_SAVED": "Bild gespeichert"}, "braces"),
-        ({"WATCH_LANDERS": ("eine Fähre",)}, "plural forms"),
-        ({"WATCH_LANDERS": ("eine Fähre", "")}, "plural forms"),
+        ({"FLIGHTS_COUNT": ("eine Fähre",)}, "plural forms"),
+        ({"FLIGHTS_COUNT": ("eine Fähre", "")}, "plural forms"),
         ({"SCREENSHOT_SAVED": "画像を保存: {path}"}, "Manrope has no '画'"),
-        ({"WATCH_LANDERS": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
+        ({"FLIGHTS_COUNT": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
     ]
     for translated, fault in cases:
         german = Catalog(locale="de")
@@ -242,10 +242,10 @@ def german(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dic
 
 
 def test_a_language_stands_in_for_english_as_far_as_it_goes(german, tmp_path: Path):
-    read = german(PAUSE_TITLE="Angehalten", WATCH_LANDERS=("eine Fähre", "{count} Fähren"))
+    read = german(PAUSE_TITLE="Angehalten", FLIGHTS_COUNT=("eine Fähre", "{count} Fähren"))
     assert read["PAUSE_TITLE"] == "Angehalten"
     assert read["PAUSE_RESUME"] == "Resume"
-    landers = read["WATCH_LANDERS"]
+    landers = read["FLIGHTS_COUNT"]
     assert isinstance(landers, Plural)
     assert [landers.format(count=count) for count in (0, 1, 2)] == ["0 Fähren", "eine Fähre", "2 Fähren"]
     assert catalogue.language(tmp_path) == "de"
@@ -311,7 +311,7 @@ def test_a_language_is_begun_and_brought_up_to_date(tmp_path: Path):
         (tmp_path / path.name).write_bytes(path.read_bytes())
     translations.follow("pl", tmp_path)
     begun = tmp_path / "pl" / "LC_MESSAGES" / "tranquility.po"
-    landers: Any = translations.translations(begun).get("one lander", "WATCH_LANDERS")
+    landers: Any = translations.translations(begun).get("{count} flight", "FLIGHTS_COUNT")
     assert len(landers.string) == 3  # Polish has a form for few
     empty = 'msgid "Paused"\nmsgstr "'
     begun.write_text(begun.read_text("utf-8").replace(empty, empty + "Pauza"), "utf-8")

@@ -1,7 +1,6 @@
 """In windows of any shape: nothing leaves the view, no two texts meet, and read-outs stand at its edges."""
 
 import math
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -32,10 +31,11 @@ def reshape(driver: Driver, size: tuple[int, int]) -> None:
     driver.frames(10)
 
 
-def boxes(written: Written, driver: Driver) -> dict[str, pygame.FRect]:
+def places(written: Written, driver: Driver) -> dict[str, tuple[float, float]]:
     page = written.turn(driver.app.canvas)
     driver.app.draw()
-    return {note.text: note.box for note in page.notes}
+    canvas, reading = driver.app.canvas, driver.app.canvas.reading
+    return {note.text: reading.points(canvas.pixels(note.box.center)) for note in page.notes}
 
 
 @examples(deadline=None, max_examples=15)
@@ -70,15 +70,15 @@ def test_sky_and_land_fill_the_window_wherever_the_camera_goes(size: tuple[int, 
         assert np.ptp(ground.astype(int).sum(axis=1)) < 200
 
 
-def test_a_choice_at_the_foot_and_a_hint_at_the_head_are_pressed_where_they_are_seen(open_game, context, written):
+def test_a_choice_and_a_hint_at_the_foot_are_pressed_where_they_are_seen(open_game, context, written):
     save_settings(context)
     driver = opened(open_game, "WatchScene")
     for size, count in zip(SHAPES, (MANY, 1, MANY), strict=True):
         reshape(driver, size)
-        seen = boxes(written, driver)
-        driver.click(seen[texts.WATCH_MANY[count == MANY]].center)
+        seen = places(written, driver)
+        driver.click(seen[texts.WATCH_MANY[count == MANY]])
         assert driver.top.swarm.env.num_envs == count, size
-        driver.click(seen["pause"].center)
+        driver.click(seen["pause"])
         assert "PauseScene" in driver.top_name, size
         driver.key(pygame.K_ESCAPE)
         driver.frames(2)
@@ -90,8 +90,7 @@ def test_a_stopped_lander_is_dragged_where_it_is_seen(open_game, context: Contex
     reshape(driver, SHAPES[1])
     driver.key(pygame.K_SPACE)
     watch = driver.top
-    canvas = driver.app.canvas
-    place = canvas.points(watch.world.camera.view(1.0).filling(canvas).pixels(watch.swarm.env.position[0]).tolist())
+    place = watch.world.place(watch.swarm.env.position[0])
     x, y = watch.swarm.env.position[0].tolist()
     driver.move(place)
     driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
@@ -146,13 +145,9 @@ def test_the_view_reaches_to_the_edges_of_any_window_with_the_page_in_its_middle
     assert view.center == pytest.approx(PAGE.center, abs=2 * pixel)
     assert canvas.pixels(view.topleft) == pytest.approx((0, 0), abs=1)
     assert canvas.pixels(view.bottomright) == pytest.approx((width, height), abs=1)
-    for across, down in product((-1, 0, 1), repeat=2):
-        moved = canvas.at(across, down)
-        corner = canvas.points(moved.pixels((0, 0)))  # of the moved page, on the canvas
-        wanted = ((0.0, view.right - 1280, view.left)[across], (0.0, view.bottom - 720, view.top)[down])
-        assert corner == pytest.approx(wanted, abs=2 * pixel)
-        assert moved.at(across, down).origin == pytest.approx(moved.origin, abs=1)
-        assert moved.points((0, 0)) == pytest.approx(moved.view.topleft, abs=2 * pixel)  # the window's corner
+    assert canvas.reading.pixels(canvas.reading.view.bottomright) == pytest.approx((width, height), abs=1)
+    assert canvas.above(60 * canvas.scale / canvas.type).view == view, "so much stands on the ground"
+    assert canvas.above(200).view.height == pytest.approx(view.height + 80 - 200 * canvas.type / canvas.scale)
 
 
 def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context: Context):

@@ -100,7 +100,7 @@ def test_the_next_leg_is_painted_before_it_begins_and_no_frame_paints_much(open_
     scene = play(driver)
     scene.flown.waiting = False
     stand_on(scene.flight.env, 0)
-    assert max(costs(driver.app, lambda: challenge.start.number == 2)) <= MOST
+    assert max(costs(driver.app, lambda: challenge.begins.number == 2)) <= MOST
     before = painted()
     driver.app.draw()
     assert painted() == before, "all of it was there"

@@ -1,40 +1,27 @@
 """Sizes of text; `tests/game/tour` asks every screen whether texts fit at the largest."""
 
+from itertools import product
+
 import pygame
 import pytest
 
 from game.core import texts
 from game.drawing import typeface
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, least
 from game.drawing.tokens import LABEL, SMALL, TEXT_SIZES, VIEW_SIZE
 from game.scenes.menus.settings import SettingsScene
 from game.ui.context import Context
 
 
-def test_small_text_grows_most_and_order_is_kept():
-    for factor in TEXT_SIZES.values():
-        typeface.grow(factor)
-        assert typeface.grown(LABEL) / LABEL == pytest.approx(factor)
-        assert typeface.grown(88.0) == 88.0
-        sizes = [typeface.grown(size / 2) for size in range(20, 100)]
-        assert sizes == sorted(sizes)
-    typeface.grow(1.0)
-
-
-def test_text_grows_no_further_than_its_room_and_never_shrinks():
-    canvas = Canvas(pygame.Surface(VIEW_SIZE))
-    usual = canvas.text("Within its room", (0, 100), size=SMALL).width
-    typeface.grow(1.25)
-    try:
-        free = canvas.text("Within its room", (0, 100), size=SMALL).width
-        assert free == pytest.approx(1.25 * usual, rel=0.05)
-        assert canvas.text("Within its room", (0, 100), size=SMALL, room=1.1 * usual).width <= 1.12 * usual
-        for room in (0.0, 0.5 * usual):
-            assert canvas.text("Within its room", (0, 100), size=SMALL, room=room).width == pytest.approx(
-                usual, rel=0.03
-            )
-    finally:
-        typeface.grow(1.0)
+def test_text_has_one_size_on_the_world_and_before_it_and_is_never_less_than_asked():
+    for window, factor in product([(640, 360), VIEW_SIZE, (2560, 1440)], TEXT_SIZES.values()):
+        canvas = Canvas(pygame.Surface(window))
+        canvas.zoom = factor
+        heights = {each.text("Size", (0, 100), size=LABEL).height * each.scale for each in (canvas, canvas.reading)}
+        assert max(heights) == pytest.approx(min(heights))
+        sheet = canvas.sheet(100, 100)
+        assert sheet.text("Size", (0, 50), size=LABEL).height * sheet.scale == pytest.approx(min(heights))
+        assert canvas.type * LABEL >= 12 * factor
 
 
 def test_names_that_no_font_can_write_are_written_all_the_same():
@@ -90,7 +77,6 @@ def test_a_text_is_as_wide_as_what_is_written_and_code_stays():
 
 @pytest.mark.usefixtures("german")
 def test_a_translation_shrinks_to_the_smallest_text_of_the_game_and_english_not_at_all():
-    canvas = Canvas(pygame.Surface(VIEW_SIZE))
-    assert [canvas.least(size) for size in (30.0, 15.0, 11.0)] == [21.0, 11.5, 11.0]
+    assert [least(size) for size in (30.0, 15.0, 11.0)] == [21.0, 12.0, 11.0]
     texts.choose("en")
-    assert canvas.least(15.0) == 15.0
+    assert least(15.0) == 15.0

@@ -12,13 +12,14 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import ACTION_NAMES
 from ai.nn import Momentum
-from ai.training.loop import Training
 from game.core import texts
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.explain.code_listing import draw_listing
+from game.explain.explained import Explained
 from game.explain.q_values import QValues, value_words
 from game.explain.readouts import PILOT
+from game.scenes.learn.pay import config_of
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver
@@ -47,7 +48,9 @@ def areas(driver: Driver) -> dict[str, pygame.FRect]:
 
 def test_everything_in_watch_is_explained(watching: Driver):
     watching.key(pygame.K_SPACE)
-    watching.keys(pygame.K_m)
+    watching.press_on(texts.MORE[0])
+    watching.frames(2)
+    watching.top._choose_map(1)
     watching.frames(12)
     named = areas(watching)
     inputs = [
@@ -153,7 +156,7 @@ def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():
     assert not any('"""' in text for _, text in source.lines)
 
 
-@pytest.mark.parametrize("function", [Momentum._fill_step, Training.advance])
+@pytest.mark.parametrize("function", [Momentum._fill_step, config_of])
 def test_remarks_for_tools_are_not_shown(function):
     raw = inspect.getsource(function)
     assert "# noqa" in raw or "# fmt" in raw
@@ -174,3 +177,16 @@ def test_the_current_line_is_in_sight_however_little_room_there_is():
         canvas.text = lambda string, *_, **__: written.append(string)  # noqa: B023
         draw_listing(canvas, (40, 40, 500, room), source, number)
         assert str(number) in written
+
+
+def test_escape_is_not_eaten_where_nothing_is_explained():
+    explained, canvas = Explained(), Canvas(pygame.Surface((800, 600)))
+    explained.action().run()
+    canvas.explain((9000, 20, 50, 20), "scrolled out of sight")
+    explained.draw(canvas)
+    assert not explained.handle_event(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE))
+    explained.action().run()
+    canvas.explain((20, 20, 50, 20), "in sight")
+    explained.draw(canvas)
+    assert explained.handle_event(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE))
+    assert not explained.stepping

@@ -14,10 +14,11 @@ from ai.lander.environment import Outcome
 from ai.lander.push import KEYS
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.explain.q_values import SPAN
 from game.flight.networks import DECISION_STEPS
 from game.scenes.play.copilot_panel import CopilotPanel
-from game.scenes.watch.decision_panel import draw_decision
+from game.scenes.watch.decision_panel import write_decision
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.drawn import Drawn, Panel, number, read_panel
@@ -95,7 +96,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
             sensed = watch.swarm.decision.observation[slot]
             assert sensed[1] > 0.5  # of the new start, not of where the last flight ended
         drawn.clear()
-        draw_decision(canvas, watch.decision)
+        write_decision(Cursor(980, 100, 244, canvas=canvas), watch.decision)
         panel = read_panel(drawn)
         points = agent.q_values(sensed)[0] / agent.config.reward_scale
         if env.outcome[slot] == Outcome.FLYING:

@@ -114,6 +114,8 @@ def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_pa
     monkeypatch.setattr(module, "films_dir", lambda: tmp_path / "pictures")
     driver = open_game(ReplayScene, record)
     driver.frames(2)
+    driver.press_on(texts.MORE[0])
+    driver.frames(2)
     return driver, driver.top
 
 

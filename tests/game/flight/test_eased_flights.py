@@ -73,7 +73,7 @@ def test_a_co_pilot_that_steps_in_flies_its_own_action_in_full():
         flight = begun(3)
         decision = SimpleNamespace(pilot=[4], action=[flown], likely=[0.0])
         copilot = SimpleNamespace(agent=ScriptedPilot(), decide=lambda *_, decision=decision: decision)
-        flight.chooser = Shared(copilot, 4)
+        flight.chooser = Shared(copilot, 4)  # type: ignore[assignment]
         flight.step(Push(9, -9))
         assert flight.env.shares.tolist() == ([[9 / STEPS, -9 / STEPS]] if flown == 4 else [[1.0, 0.0]])
         assert flight.recording.pushes == [Push(9, -9) if flown == 4 else KEYS[3]]

@@ -18,7 +18,7 @@ from game.flight.credit import Credit
 from game.flight.flight import StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest
-from game.scenes.play.free import FreeFlight
+from game.scenes.play.challenge import Rules
 from game.scenes.play.interventions import Interventions
 from game.scenes.play.words import why_not_saved
 from tests.support.flights import actions, begun
@@ -191,7 +191,7 @@ def test_the_process_flies_what_is_asked_for_first_and_then_every_key(agent):
 def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_named(agent):
     for held, changed in ((0, False), (2, True)):
         flight = guarded(agent)
-        credit = Credit(flight, Settings(), FreeFlight(Settings()))
+        credit = Credit(flight, Settings(), Rules())
         assert credit.notice == texts.HELP_IS_ON
         for _ in range(24):
             flight.step(KEYS[held])

@@ -12,7 +12,7 @@ import pytest
 
 from game.core import texts
 from game.core.assets import ASSETS_DIR
-from game.flight import flight_file, sharing
+from game.flight import codes, flight_file
 from game.flight.flight_file import Record
 from game.flight.logbook import describe
 from tests.support.flights import scripted
@@ -28,7 +28,7 @@ def record():
 
 
 def code(record, **changed):
-    return sharing.code(replace(record, entry=replace(record.entry, **changed)))
+    return codes.code(replace(record, entry=replace(record.entry, **changed)))
 
 
 def test_the_flights_that_come_with_the_game_earn_what_they_claim(capsys):
@@ -61,12 +61,12 @@ def test_each_code_of_a_text_is_judged_by_itself(tmp_path, capsys, record):
 def test_a_flight_from_elsewhere_than_it_says_is_wrong_and_the_day_is_named(tmp_path, capsys, monkeypatch):
     day = date(2026, 11, 22)
     true = scripted(day.toordinal(), pads=3)
-    codes = []
+    said = []
     for flight, course in ((true, "daily"), (scripted(day.toordinal()), "daily"), (true, "")):
         entry = describe(flight, 0.0, course=course)
         x, y, angle = flight.poses.now[0].tolist()
-        codes.append(sharing.code(Record(flight.recording, entry, (x, y, angle))))
-    piped = TextIOWrapper(BytesIO("\n".join(codes).encode()))
+        said.append(codes.code(Record(flight.recording, entry, (x, y, angle))))
+    piped = TextIOWrapper(BytesIO("\n".join(said).encode()))
     monkeypatch.setattr(sys, "stdin", piped)
     assert main(["verify", "-"]) == 1
     lines = capsys.readouterr().out.splitlines()

@@ -70,7 +70,7 @@ def test_flying_goes_by_place_and_letters_of_commands_by_what_is_written(
     press(driver, layout, place_of(layout, "r"))
     assert scene.flight is not flown, "R tries again"
     press(driver, layout, place_of(layout, "c"))
-    assert driver.top_name == "ChoicesScene"
+    assert driver.top_name == "FlightPauseScene"
     press(driver, layout, place_of(layout, "c"))
     assert driver.top is scene
 
@@ -128,4 +128,4 @@ def test_alt_enter_stays_and_a_bound_ctrl_key_holds_nothing_back(open_game: Open
     driver = open_game(PlayScene, seed=4)
     driver.frames(2)
     driver.key(pygame.K_c, pygame.KMOD_LCTRL)
-    assert driver.top_name == "ChoicesScene"
+    assert driver.top_name == "FlightPauseScene"

@@ -36,10 +36,10 @@ def descent(driver: Driver) -> Descent:
 
 def land(driver: Driver, pad: int = 0) -> None:
     """Stand on a pad until the next leg hangs there."""
-    scene, number = play(driver), descent(driver).start.number
+    scene, number = play(driver), descent(driver).begins.number
     scene.flown.waiting = False
     stand_on(scene.flight.env, pad)
-    while descent(driver).start.number == number:
+    while descent(driver).begins.number == number:
         driver.skip()
 
 
@@ -56,8 +56,8 @@ def test_a_landing_leads_to_the_next_leg_which_hangs_on_its_feet_with_what_is_in
     land(game)
     scene = play(game)
     assert scene.waiting
-    assert descent(game).start == scene.flight.recording.leg
-    assert (descent(game).start.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
+    assert descent(game).begins == scene.flight.recording.leg
+    assert (descent(game).begins.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
     place = scene.flight.env.position.copy()
     game.frames(10)
     assert (scene.flight.env.position == place).all()
@@ -91,7 +91,7 @@ def test_every_leg_can_be_watched_again_to_the_bit(game: Driver, context: Contex
         game.skip(10)
     records = Records(context.user_dir)
     record = records.read(records.entries()[-1].file)
-    assert record.recording.leg == LegStart(2, descent(game).start.tank)
+    assert record.recording.leg == LegStart(2, descent(game).begins.tank)
     again = FlightReplay(record)
     again.scout(10_000)
     assert again.complete
@@ -107,7 +107,7 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     assert card.advice == texts.DESCENT_NEW_BEST
     ground = play(game).flight.recording.seed
     game.key(pygame.K_RETURN)
-    assert (descent(game).start, descent(game).best[0]) == (LegStart(), 1)
+    assert (descent(game).begins, descent(game).best[0]) == (LegStart(), 1)
     assert play(game).flight.recording.seed == ground
     assert play(game).flown.ghost.name == texts.GHOST_BEFORE
     land(game)
@@ -137,21 +137,21 @@ def test_another_start_asks_before_it_ends_a_run_and_comes_at_once_where_none_is
     game.frames(3)
     for key in (pygame.K_r, pygame.K_n):
         game.keys(key)
-        assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
+        assert (game.top_name, descent(game).begins.number) == ("PlayScene", 1)
         land(game)
         game.keys(key)
         assert game.top_name == "QuestionDialog"
         assert "1 leg landed" in game.top.more
         game.keys(pygame.K_RETURN)  # the answer in focus is the harmless one
-        assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+        assert (game.top_name, descent(game).begins.number) == ("PlayScene", 2)
         game.keys(key, pygame.K_ESCAPE)
-        assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+        assert (game.top_name, descent(game).begins.number) == ("PlayScene", 2)
         game.keys(key, pygame.K_RIGHT, pygame.K_RETURN)
-        assert (game.top_name, descent(game).start.number, descent(game).total) == ("PlayScene", 1, 0)
+        assert (game.top_name, descent(game).begins.number, descent(game).total) == ("PlayScene", 1, 0)
     land(game)
     crash(game)
     game.key(pygame.K_n)
-    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1), "a run that has ended is not lost"
+    assert (game.top_name, descent(game).begins.number) == ("PlayScene", 1), "a run that has ended is not lost"
 
 
 # A tap counts, even if a slow frame brings the press and the release at once.

@@ -16,9 +16,9 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
-from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
+from game.flight.logbook import ladder_rung
 from game.flight.outcomes import outcome_card
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.free import FreeFlight
@@ -28,7 +28,7 @@ from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.game.play.ends import BESIDE, ON_PAD, TOO_FAST, end, place
 from tests.support.driver import Driver
-from tests.support.flights import begun, challenge_of, fly_out, play
+from tests.support.flights import begun, challenge_of, concluded, fly_out, play
 from tests.support.player import Player
 from tests.support.reading import Weighs
 
@@ -105,12 +105,12 @@ def test_another_try_is_the_very_same_start_and_the_top_is_flights_from_anywhere
     assert play(driver).ending.card.rung is None
 
 
-def noted(rung: int, flight: Flight, *ends: Flight) -> tuple[FreeFlight, Settings]:
+def noted(rung: int, flight: Flight, *ends: Flight) -> Settings:
     settings = Settings(rung=rung)
     free = FreeFlight(settings)
     for each in (flight, *ends):
-        free.note_end(each, Credit(each, settings, free))
-    return free, settings
+        concluded(free, each)
+    return settings
 
 
 def test_only_crashes_of_ones_own_lead_down_and_only_landings_of_ones_own_up():
@@ -121,12 +121,12 @@ def test_only_crashes_of_ones_own_lead_down_and_only_landings_of_ones_own_up():
 
     crash, landing, beside = (ended(*state) for state in (TOO_FAST, ON_PAD, BESIDE))
     for flights, rung in (([crash, crash], 2), ([crash, landing, crash], 4), ([beside] * 3, 3)):
-        assert noted(3, *flights)[1].rung == rung
+        assert noted(3, *flights).rung == rung
     flight = begun(7, ScriptedPilot(), LADDER.spawn(0))
     flight.chooser.hand_over()
     fly_out(flight)
-    free, settings = noted(0, flight)
-    card = free.card(outcome_card(flight.env, flight.share), flight, Credit(flight, settings, free))
+    settings = Settings(rung=0)
+    card = concluded(FreeFlight(settings), flight)
     assert flight.outcome is Outcome.LANDED
     assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
 
@@ -139,10 +139,10 @@ def test_who_has_landed_often_before_begins_high_up_and_the_page_of_play_says_wh
         ([], 0), ([entry("LANDED")] * 4, 4), ([entry("LANDED", 0.0)] * 4, 0), ([entry("LANDED")] * 60, TOP_RUNG)
     ):  # fmt: skip
         settings = Settings()
-        FreeFlight(settings).recall([*entries, entry("CRASHED")])
+        ladder_rung(settings, [*entries, entry("CRASHED")])
         assert settings.rung == rung
     settings = Settings(rung=2)
-    FreeFlight(settings).recall([entry("LANDED")] * 60)
+    ladder_rung(settings, [entry("LANDED")] * 60)
     assert settings.rung == 2
     context.settings.rung = -1
     page = FlightsScene(context)
@@ -267,7 +267,7 @@ def test_nobody_hands_over_where_a_guard_is_to_be_seen(open_game: Open):
         driver.skip()
     driver.key(pygame.K_TAB)
     driver.frames(2)
-    assert (play(driver).flight.chooser.hand, challenge_of(driver).through) == (StickHolder.HUMAN, False)
+    assert (play(driver).flight.chooser.hand, challenge_of(driver).rules.through) == (StickHolder.HUMAN, False)
 
 
 def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
@@ -283,11 +283,12 @@ def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
         (0.7, 1, texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED),
     ):
         landed = SimpleNamespace(share=human, chooser=play(driver).flight.chooser)
-        shown = challenge.card(replace(card, stepped_in=saved), landed, play(driver).credit)
+        shown = replace(card, stepped_in=saved)
+        challenge._add_to(SimpleNamespace(flight=landed), shown)
         assert (shown.title, shown.reason) == (title, reason), (human, saved)
 
 
 def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
     driver = at_lesson(open_game, "dial")
     driver.key(pygame.K_n)
-    assert play(driver).challenge.free
+    assert play(driver).challenge.rules.free

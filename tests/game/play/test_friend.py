@@ -7,14 +7,14 @@ import pygame
 import pytest
 
 from game.core import texts
-from game.flight import sharing
+from game.flight import codes
 from game.flight.flight_file import Record
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.challenge import Race
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.scene import TrainScene
 from game.ui.context import Context
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
@@ -50,10 +50,10 @@ def paste(driver: Driver, text: str, clipboard: list[str]) -> None:
     driver.frames(2)
 
 
-@pytest.mark.parametrize("scene", [MenuScene, PlayScene, DigitTrainingScene])
+@pytest.mark.parametrize("scene", [MenuScene, PlayScene, TrainScene])
 def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboard: list[str], scene):
     driver = open_game(scene)
-    paste(driver, f"Beat this: “{sharing.code(record)}”", clipboard)
+    paste(driver, f"Beat this: “{codes.code(record)}”", clipboard)
     assert page(driver).record.recording == record.recording
     driver.key(pygame.K_ESCAPE)
     assert isinstance(driver.top, scene)
@@ -61,7 +61,7 @@ def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboa
 
 def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, record: Record, tmp_path):
     code = tmp_path / "from a friend.txt"
-    code.write_text(sharing.code(record))
+    code.write_text(codes.code(record))
     for path, scene in ((code, MenuScene), (context.user_dir / "flights" / record.entry.file, PlayScene)):
         driver = open_game(scene)
         driver.frames(2)
@@ -79,7 +79,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(
     path = tmp_path / "strange.bin"
     refused = texts.CODE_REFUSED
     for content, why in (
-        (b"tranq3-000-over", refused["damaged"]), (b"tranq3-000", refused["cut"]),
+        (b"tranq4-000-over", refused["damaged"]), (b"tranq4-000", refused["cut"]),
         (b"tranq-000-over", refused["older"]), (b"hello", refused["none"]), (b"\xff\xfe", refused["none"]),
         (b"x" * 2_000_000, ""),
     ):  # fmt: skip
@@ -97,24 +97,24 @@ def test_what_is_no_flight_is_refused_in_a_sentence(
     driver.key(pygame.K_v, pygame.KMOD_LCTRL)
     assert (driver.top_name, driver.said) == ("MenuScene", texts.CODE_PASTE_EMPTY)
     monkeypatch.setattr(pygame.scrap, "get_text", lambda: clipboard[-1])
-    paste(driver, "tranq3-000", clipboard)
+    paste(driver, "tranq4-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=refused["cut"])
 
 
 def test_the_replay_says_what_the_flight_earns_whatever_it_claims(open_game: Open, record: Record, written: list[str]):
     driver = open_game()
     claimed = replace(record, entry=replace(record.entry, score=999))
-    driver.post(pygame.DROPTEXT, text=sharing.code(claimed))
+    driver.post(pygame.DROPTEXT, text=codes.code(claimed))
     driver.frames(2)
     assert texts.COURSE_FREE[1] in written
     page(driver).flight_replay.scout(10_000)
     driver.frames(2)
-    assert f"{texts.COURSE_FREE[1]}  ·  landed, {record.entry.score} points" in written
+    assert f"{texts.COURSE_FREE[1]} · landed, {record.entry.score} points" in written
 
 
 def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, record: Record, clipboard: list[str]):
     driver = open_game()
-    driver.post(pygame.DROPTEXT, text=sharing.code(record))
+    driver.post(pygame.DROPTEXT, text=codes.code(record))
     driver.frames(2)
     driver.press_on(texts.FRIEND_ANSWER)
     driver.frames(3)
@@ -122,18 +122,23 @@ def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, re
     assert isinstance(scene.challenge, Race)
     assert scene.flown.ghost.name == texts.FRIEND_NAME
     end(driver, TOO_FAST)
-    driver.key(pygame.K_k)
+    driver.frames(60)
+    driver.key(pygame.K_t)
+    driver.press_on(texts.MORE[0])
+    driver.press_on(texts.CODE_COPY)
     assert driver.said == texts.CODE_COPIED
-    answer = sharing.flight_in(clipboard[-1])
+    answer = codes.flight_in(clipboard[-1])
     assert answer.recording == scene.flight.recording
     assert answer.recording.seed == record.recording.seed
     assert answer.claim.outcome.name == scene.flight.outcome.name
 
 
 def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, clipboard: list[str]):
-    code = sharing.code(replace(record, entry=replace(record.entry, score=999)))
+    code = codes.code(replace(record, entry=replace(record.entry, score=999)))
     driver = open_game()
     driver.post(pygame.DROPTEXT, text=code)
+    driver.frames(2)
+    driver.press_on(texts.MORE[0])
     driver.frames(2)
     driver.press_on(texts.CODE_COPY)
     assert clipboard[-1] == code
@@ -152,6 +157,6 @@ def test_without_a_clipboard_the_code_is_written_to_a_file(
     driver.press_on(texts.CODE_COPY)
     (path,) = (context.user_dir / "codes").iterdir()
     assert path.name in driver.said
-    assert sharing.flight_in_file(path).recording == record.recording
+    assert codes.flight_in_file(path).recording == record.recording
     driver.press_on(texts.CODE_PASTE)
     assert driver.said == texts.CODE_PASTE_EMPTY

@@ -10,11 +10,9 @@ from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.scene import Pop
-from game.core.settings import Settings
 from game.explain.readouts import flight_readouts
 from game.flight import flight_file
 from game.flight.choosers import Recorded
-from game.flight.credit import Credit
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
 from game.scenes.logbook.scene import LogbookScene
@@ -26,7 +24,7 @@ from game.ui.context import Context
 from game.ui.listing import ListRow
 from tests.game.play.ends import end
 from tests.support.driver import Driver
-from tests.support.flights import actions, begun, kept, play, scripted
+from tests.support.flights import actions, begun, concluded, kept, play, scripted
 from tests.support.missions import fly, pilots
 
 Open = Callable[..., Driver]
@@ -134,7 +132,7 @@ def carded(name: str, fuel: float, seconds: float, cause: Cause = Cause.NONE) ->
     env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
     challenge = FlownMission(MISSIONS[name])
     card = OutcomeCard(not cause, "", "", (), 1.0, advice="else")
-    return challenge.card(card, flight, Credit(flight, Settings(), challenge))
+    return concluded(challenge, flight, card)
 
 
 def test_the_card_says_what_the_next_medal_asks_and_of_a_loss_what_the_missions_own_trouble_does():

@@ -17,6 +17,7 @@ from game.flight.outcomes import crash_reason
 from game.input.bindings import Held
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
+from game.scenes.play.challenge import Wanted
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import COPILOT, LESSONS, Tutorial
 from game.ui.context import Context
@@ -119,13 +120,13 @@ class Reader:
         """Do as the lessons say until all is done; the lessons, as they come."""
         last = ""
         for _ in range(most):
-            if self.challenge.through:
+            if self.challenge.rules.through:
                 break
             if (name := self.challenge.lesson.name) != last:
                 yield name
                 last = name
             self.follow()
-        assert self.challenge.through, self.read[-1]
+        assert self.challenge.rules.through, self.read[-1]
         self.hold(set())
         self.driver.unseen = False
 
@@ -184,7 +185,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(open_ga
     assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
     driver.key(pygame.K_RETURN)
-    assert play(driver).challenge.free
+    assert play(driver).challenge.rules.free
     assert play(driver).waiting
     driver.app.close()
     assert saved(driver) == (True, True)
@@ -271,14 +272,14 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     assert saved(driver) == (False, False)
     driver.keys(pygame.K_UP, pygame.K_ESCAPE)
     driver.press_on(texts.TUTORIAL_LEAVE)
-    assert play(driver).challenge.free
+    assert play(driver).challenge.rules.free
     assert saved(driver) == (True, False)
 
 
 def test_without_a_network_nobody_is_asked_to_hand_over():
     lessons, names = Tutorial(), []
-    lessons.flight(0, None)
-    while not lessons.through:
+    lessons.start(Wanted(0))
+    while not lessons.rules.through:
         names.append(lessons.lesson.name)
         lessons.skip()
     assert names == [name for name in NAMES if name not in ("hand_over", "take_back")]

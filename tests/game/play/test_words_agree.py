@@ -106,7 +106,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
         assert challenge_of(driver).why in page.words
         return
     page = reading.check(140 if "pace" in settings else 70)  # at half speed the card takes twice as long to come
-    if play(driver).challenge and not play(driver).challenge.kept:
+    if play(driver).challenge and not play(driver).challenge.rules.kept:
         return
     entry = Records(context.user_dir).entries()[-1]
     assert entry.outcome == outcome.name
@@ -229,6 +229,7 @@ def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context,
         reading.driver.key(pygame.K_c)
         words = " ".join(reading.page(2).words)
         assert (texts.HELP_MEANS["guide"] in words) is ("you fall" not in words) is helped
+        reading.driver.keys(*[pygame.K_DOWN] * 4)
         reading.driver.keys(*[pygame.K_LEFT if helped else pygame.K_RIGHT] * 3)
         words = " ".join(reading.page(2).words)
         assert (texts.HELP_MEANS["guide"] in words) is ("you fall" not in words) is not helped

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pygame
 import pytest
 
@@ -62,9 +61,15 @@ def scene(driver: Driver) -> WatchScene:
     return driver.top
 
 
+def open_pilots(driver: Driver) -> None:
+    driver.press_on(texts.MORE[0])
+    driver.frames(1)
+    driver.press_on(texts.PILOTS_OPEN)
+
+
 def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, context: Context, edited: list[Path]):
     watching.key(pygame.K_SPACE)
-    watching.key(pygame.K_o)
+    open_pilots(watching)
     assert isinstance(watching.top, PilotsScene)
     watching.press_on(texts.PILOTS_NEW)
     [path] = edited
@@ -73,19 +78,18 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
     watching.press_on(texts.PILOTS_FLY)
     watch = scene(watching)
     assert not watch.playback.stopped, "what was stopped goes on"
-    watching.wait(lambda: watch.network.name == "pilot.py")
-    pilot = watch.network.policy
+    watching.wait(lambda: watch.flyer.network.name == "pilot.py")
+    pilot = watch.flyer.network.policy
     assert isinstance(pilot, OwnPilot)
     pilot._patience = 60.0
     watching.wait(lambda: watch.decision.action[0] == 4)
-    assert texts.WATCH_OWN.format(name="pilot.py") == watch._said
+    assert texts.WATCH_OWN.format(name="pilot.py") == watch.flyer.sentence
     assert context.settings.model != "pilot.py"  # the next game asks again
     path.write_text("def act(o):\n    return 1 / 0 if o[1] < 99 else 0")
     watching.wait(lambda: pilot.problem)
     assert pilot.problem == "line 2: ZeroDivisionError: division by zero"
     assert watch.decision.action[0] == 4
-    assert watch._problem().endswith("The last good one flies on.")
-    watching.key(pygame.K_m)
+    assert watch.flyer.problem.endswith("The last good one flies on.")
     watching.frames(5)
     watch.swarm.landed, watch.swarm.lost = 3, 4
     path.write_text("def act(o):\n    return 2")
@@ -96,19 +100,19 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
 
 def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Driver, context: Context):
     shelf.Shelf(context.user_dir).new().write_text("def act(:")
-    watching.key(pygame.K_o)
+    open_pilots(watching)
     watching.press_on(texts.PILOTS_FLY)
     watch = scene(watching)
-    watching.wait(lambda: "SyntaxError" in watch._problem())
-    assert watch.network.name == "scripted"
-    assert watch._problem().startswith("pilot.py: line 1: SyntaxError")
+    watching.wait(lambda: "SyntaxError" in watch.flyer.problem)
+    assert watch.flyer.network.name == "scripted"
+    assert watch.flyer.problem.startswith("pilot.py: line 1: SyntaxError")
 
 
 def test_no_file_flies_before_it_was_chosen_in_this_game(open_game: Open, context: Context):
     shelf.Shelf(context.user_dir).new()
     context.settings.model = "pilot.py"
     driver = open_game(WatchScene, seed=2)
-    assert "pilot.py" not in scene(driver).policies.names
+    assert "pilot.py" not in scene(driver).flyer.policies.names
     assert context.pilot is None
 
 
@@ -120,7 +124,7 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
         raise OSError(errno.ENOSPC, "No space left")
 
     monkeypatch.setattr(*((pilots, "edit") if fails == "editor" else (shelf, "write_text")), refuse)
-    watching.key(pygame.K_o)
+    open_pilots(watching)
     watching.press_on(texts.PILOTS_NEW)
     folder = context.user_dir / "pilots"
     message = watching.top._said
@@ -137,7 +141,7 @@ def test_it_is_measured_and_that_is_said_in_one_line_until_the_file_is_saved_aga
     monkeypatch.setattr(own, "STARTS", 10)
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
     path = shelf.Shelf(context.user_dir).new()
-    watching.key(pygame.K_o)
+    open_pilots(watching)
     written.clear()
     watching.press_on(texts.PILOTS_MEASURE)
     watching.wait(lambda: watching.top._worker is None)
@@ -174,7 +178,7 @@ def test_a_measurement_says_how_far_it_is_and_keeps_what_came(context: Context, 
 
 def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, context: Context):
     shelf.Shelf(context.user_dir).new().write_text("def act(o):\n    while True: pass")
-    watching.key(pygame.K_o)
+    open_pilots(watching)
     watching.frames(1)
     place = watching.widget(texts.PILOTS_MEASURE).box.topleft
     watching.press_on(texts.PILOTS_MEASURE)
@@ -188,22 +192,11 @@ def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, c
 def test_what_is_wrong_with_a_measured_file_is_reported(watching: Driver, context: Context, monkeypatch):
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
     shelf.Shelf(context.user_dir).new().write_text("def act(o): return 9")
-    watching.key(pygame.K_o)
+    open_pilots(watching)
     watching.press_on(texts.PILOTS_MEASURE)
     watching.wait(lambda: watching.top._worker is None)
     assert "whole number from 0 to 5" in watching.top._said
     assert shelf.Shelf(context.user_dir).measured() == []
-
-
-def test_each_key_says_what_it_did_while_all_stands_still(watching: Driver):
-    watching.key(pygame.K_SPACE)
-    watch = scene(watching)
-    said = {}
-    for key in (pygame.K_PERIOD, pygame.K_q, pygame.K_z, pygame.K_m, pygame.K_n, pygame.K_r, pygame.K_PLUS):
-        watching.key(key)
-        assert watch._message not in said.values(), pygame.key.name(key)
-        said[key] = watch._message
-    assert np.all([said.values()])
 
 
 def test_play_hands_over_to_it_and_it_is_no_record(
@@ -241,7 +234,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
 def test_it_is_raced_as_a_ghost(open_game: Open, context: Context):
     shelf.Shelf(context.user_dir).new()
     driver = open_game(WatchScene, seed=2)
-    driver.key(pygame.K_o)
+    open_pilots(driver)
     driver.press_on(texts.PILOTS_RACE)
     play = driver.top
     assert isinstance(play, PlayScene)

@@ -15,6 +15,7 @@ from game.flight.days import Attempt, Days
 from game.flight.logbook import Records
 from game.flight.progress import put_away
 from game.scenes.menus.settings import SettingsScene
+from game.scenes.play.challenge import Wanted
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
@@ -38,7 +39,7 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 def test_progress_is_put_away_after_a_question_and_it_is_said_where(open_game: Open, context: Context):
-    save_settings(context, learnt={"neuron": 3}, chapter="plane", rung=4, wider_pads=True)
+    save_settings(context, learnt={"neuron": 3}, rung=4, wider_pads=True)
     fly(context)
     Days(context.user_dir).note(Attempt("2026-11-20", score=70))
     before = files(context.user_dir)
@@ -56,8 +57,8 @@ def test_progress_is_put_away_after_a_question_and_it_is_said_where(open_game: O
     assert (files(context.user_dir), files(box)) == ({}, before)
     assert Records(context.user_dir).entries() == []
     saved = player.saved()
-    assert (saved["learnt"], saved["chapter"], saved["rung"], saved["wider_pads"]) == ({}, "", -1, True)
-    assert free.chosen()[1] == LADDER.spawn(0)
+    assert (saved["learnt"], saved["rung"], saved["wider_pads"]) == ({}, -1, True)
+    assert free.start(Wanted(0)).recording.spawn == LADDER.spawn(0)
     fly(context, 1)
     assert len(Records(context.user_dir).entries()) == 1
     second = put_away(context.user_dir, context.settings)

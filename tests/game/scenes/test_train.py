@@ -13,16 +13,18 @@ import pytest
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
+from ai.training.messages import FirstLanding
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.explain.network_view import NetworkView
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
-from game.training.run import TrainingRun
+from game.training.run import PACES, TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
-from game.ui.rows import ChoiceRow
+from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
@@ -39,7 +41,7 @@ def test_start_pause_and_go_on(beside: Driver) -> None:
     learn(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
-    assert len(scene.landers.now.swarm_state.outcome) == 4
+    assert len(scene.view.swarms.now.swarm_state.outcome) == 4
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(20)
@@ -53,8 +55,8 @@ def test_start_pause_and_go_on(beside: Driver) -> None:
     beside.wait(lambda: scene.run.swarm_state.decisions > stood + 8)
 
 
-def test_a_run_goes_slow_or_fast_in_sight_while_it_goes_on(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not any(isinstance(each, ChoiceRow) for each in train.form.widgets)
+def test_a_run_goes_slow_or_fast_in_sight(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert train.choice(texts.TRAIN_PACES[0]).index == 1
     learn(train)
     train.frames(2)
     pace = train.choice(texts.TRAIN_PACES[0])
@@ -63,7 +65,43 @@ def test_a_run_goes_slow_or_fast_in_sight_while_it_goes_on(train: Driver, monkey
     monkeypatch.setattr(train.top.run._worker, "set_pace", asked.append)
     pace.choose(0)
     pace.choose(1)
-    assert asked == [15.0, None], "as in real flight, and as fast as possible"
+    assert asked == [PACES[0], None], "to be watched, and as fast as possible"
+    assert not train.app.context.settings.slow_runs, "the next one goes as this one"
+
+
+def test_at_the_first_landing_it_offers_once_to_stop_and_look(
+    open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inline_worker.install(monkeypatch.setattr)
+    driver = open_game(TrainScene, first_run=True)
+    driver.frames(2)
+    assert driver.choice(texts.TRAIN_PACES[0]).index == 0, "a first run goes slowly"
+    scene, run = driver.top, driver.top.run
+    scene.knobs.set_config(SMALL, 3)
+    learn(driver)
+    at = run.swarm_state.decisions
+    run.first_landing = FirstLanding(2, at)
+    driver.frames(2)
+    assert driver.form.focused.label == texts.LESSON_LOOK, "one key"
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: isinstance(driver.top, LessonScene))
+    assert driver.top.lesson.flown.slot == 2
+    assert run.state is WorkerState.PAUSED, "the landers stand still behind it"
+    values = run.network_state.values.copy()
+    driver.top.show(4)
+    driver.skip(300)
+    card = driver.top.card
+    assert abs(card.alone.way[-1] - card.alone.target) < abs(card.alone.way[0] - card.alone.target)
+    assert (run.network_state.values == values).all(), "a copy learns"
+    before = driver.top.lesson
+    driver.press_on(texts.LESSON_ANOTHER)
+    driver.wait(lambda: driver.top.lesson is not before)
+    assert driver.top.current == 0
+    driver.key(pygame.K_ESCAPE)
+    driver.wait(lambda: run.swarm_state.decisions > at)
+    assert driver.top is scene
+    assert texts.LESSON_LOOK not in [each.label for each in driver.form.widgets]
+    assert driver.app.context.settings.lesson_offered, "never again"
 
 
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
@@ -95,7 +133,7 @@ def test_start_keeps_what_was_left_if_it_lands(
     monkeypatch.setattr(Library, "rescued", lambda library: (run := left(library)) and replace(run, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
-    library = driver.top.library
+    library = driver.top.run.collection
     learn(driver)
     assert len(library.runs()) == (share is not None)
 
@@ -105,9 +143,9 @@ def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver)
     scene = train.top
     scene.knobs.turn("n_step", 3)
     train.frames(2)
-    train.press_on(texts.KNOBS_APPLY)
-    train.wait(lambda: scene.library.runs() and scene.run.config.n_step == 3)
-    (kept,) = scene.library.runs()
+    train.press_on(texts.TRAIN_ANEW)
+    train.wait(lambda: scene.run.collection.runs() and scene.run.config.n_step == 3)
+    (kept,) = scene.run.collection.runs()
     assert not kept.problem
     assert kept.decisions > 0
 
@@ -116,7 +154,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     learn(train)
     scene = train.top
     save_as(train, "mine")
-    train.wait(scene.library.runs)
+    train.wait(scene.run.collection.runs)
     train.press_on(texts.TRAIN_RUNS)
     train.frames(2)
     train.press_on(texts.RUN_TRAIN)
@@ -128,7 +166,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
 def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> None:
     learn(train)
     scene = train.top
-    (scene.library.folder / "mine").mkdir()
+    (scene.run.collection.folder / "mine").mkdir()
     train.press_on(texts.TRAIN_SAVE)
     train.the(EntryRow).text = "mine"
     train.key(pygame.K_RETURN)
@@ -136,7 +174,7 @@ def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> N
     train.post(pygame.TEXTINPUT, text="M2")
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    train.wait(scene.library.runs)
+    train.wait(scene.run.collection.runs)
 
 
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
@@ -167,8 +205,8 @@ def test_a_run_is_started_named_found_and_left_without_a_mouse(train: Driver) ->
     assert train.top_name == "NameDialog"
     press("confirm")
     assert train.top is scene
-    train.wait(scene.library.runs)
-    (run,) = scene.library.runs()
+    train.wait(scene.run.collection.runs)
+    (run,) = scene.run.collection.runs()
     assert (run.problem, run.seed) == ("", 3)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
@@ -179,7 +217,7 @@ def test_a_dead_worker_is_reported_and_its_run_can_still_be_saved(beside: Driver
     beside.unseen = True
     learn(beside)
     scene = beside.top
-    beside.wait(lambda: scene.library.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
+    beside.wait(lambda: scene.run.collection.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
     for child in active_children():
         child.kill()
     beside.wait(lambda: scene.run.state is WorkerState.FAILED)

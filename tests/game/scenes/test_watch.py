@@ -15,7 +15,7 @@ from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context
-from game.world.camera import Camera
+from game.ui.rows import ChoiceRow
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
@@ -65,7 +65,9 @@ def test_one_step_leads_from_the_end_of_a_flight_to_the_first_decision_of_the_ne
 
 def test_another_number_of_landers_while_stopped_shows_what_they_will_fly(watching: Driver):
     watching.frames(30)
-    watching.keys(pygame.K_SPACE, pygame.K_DOWN, pygame.K_RIGHT)
+    watching.key(pygame.K_SPACE)
+    watching.form.focus(watching.choice(texts.WATCH_MANY[1]))
+    watching.key(pygame.K_RIGHT)
     watch = scene(watching)
     assert watch.playback.stopped
     assert watch.swarm.env.num_envs == 64
@@ -77,7 +79,7 @@ def test_another_number_of_landers_while_stopped_shows_what_they_will_fly(watchi
 
 
 def test_slower_and_faster(watching: Driver):
-    for key, times, speed in ((pygame.K_MINUS, 2, 0.25), (pygame.K_PLUS, 9, 4)):
+    for key, times, speed in ((pygame.K_MINUS, 1, 0.25), (pygame.K_PLUS, 9, 4)):
         watching.keys(*[key] * times)
         before = steps(watching)
         watching.skip(40)
@@ -92,7 +94,7 @@ def test_the_mouse_chooses_words_and_landers(watching: Driver):
     positions = scene(watching).swarm.env.position
     apart = [np.sort(np.hypot(*(positions - place).T))[1] for place in positions]
     free = [slot for slot in np.argsort(apart)[::-1] if abs(positions[slot][0]) < 9 and slot]
-    watching.click(tuple(Camera().view(1.0).points(positions[free[0]])))
+    watching.click(scene(watching).world.place(positions[free[0]]))
     assert scene(watching).world.shown == free[0]
     watching.keys(pygame.K_n)
     assert scene(watching).world.shown == (free[0] + 1) % 64
@@ -118,22 +120,27 @@ def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
 
 
 def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
-    assert scene(many).network.name == "run 03"
-    assert scene(many).policies.read.keys() == {"run 03"}
+    assert scene(many).flyer.network.name == "run 03"
+    assert scene(many).flyer.policies.read.keys() == {"run 03"}
     many.key(pygame.K_RIGHT)
-    assert scene(many).policies.read.keys() == {"run 03", "run 04"}
+    assert scene(many).flyer.policies.read.keys() == {"run 03", "run 04"}
+
+
+def who(driver: Driver) -> ChoiceRow:
+    found = driver.form.find(texts.WATCH_MODEL)
+    assert isinstance(found, ChoiceRow)
+    return found
 
 
 def flies(driver: Driver) -> str:
-    choice = scene(driver)._model_choice
-    return choice.options[choice.index]
+    return who(driver).options[who(driver).index]
 
 
 def test_a_list_opens_to_choose_from_also_by_way_of_the_pause(many: Driver, context: Context):
     flown = "run 03"
     for way in ("mouse", "pause"):
         if way == "mouse":
-            many.click(scene(many)._model_choice._places[-1].center)
+            many.click(who(many)._places[-1].center)
         else:
             many.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
         runs = many.top
@@ -144,7 +151,7 @@ def test_a_list_opens_to_choose_from_also_by_way_of_the_pause(many: Driver, cont
         many.keys(pygame.K_HOME, *[pygame.K_DOWN] * [run.name for run in runs.items].index(flown), pygame.K_RETURN)
         if way == "pause":
             many.key(pygame.K_ESCAPE)
-        assert scene(many).network.name == context.settings.model == flies(many) == flown
+        assert scene(many).flyer.network.name == context.settings.model == flies(many) == flown
 
 
 def test_what_was_renamed_or_deleted_meanwhile_is_noted(many: Driver, context: Context):
@@ -154,36 +161,39 @@ def test_what_was_renamed_or_deleted_meanwhile_is_noted(many: Driver, context: C
     library.rename("run 04", "better")
     many.key(pygame.K_ESCAPE)
     watch = scene(many)
-    assert "better" in scene(many)._model_choice.options
-    assert "run 03" not in scene(many)._model_choice.options
-    assert watch.network.name == flies(many)
+    assert "better" in who(many).options
+    assert "run 03" not in who(many).options
+    assert watch.flyer.network.name == flies(many)
     many.frames(5)
 
 
 def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watching: Driver):
     watching.frames(2)
     watch = scene(watching)
-    assert "missing" in watch.problem
-    assert watch.network.name == "scripted"
+    assert "missing" in watch.flyer.problem
+    assert watch.flyer.network.name == "scripted"
     watching.key(pygame.K_RIGHT)
-    assert not watch.problem
+    assert not watch.flyer.problem
     watching.frames(60)
     assert watching.top is watch
 
 
 def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
     watch = scene(watching)
-    assert watch.world.camera.view(1.0).zoom != 1
+    before = watch.world.camera.shot
     watching.key(pygame.K_ESCAPE)
     watching.app.context.settings.reduced_motion = True
     watching.key(pygame.K_ESCAPE)
     assert scene(watching) is watch
     watching.frames(5)
-    assert watch.world.camera.view(1.0) == Camera().view(1.0)
+    rests = watch.world.camera.shot
+    assert rests != before
+    watching.frames(60)
+    assert watch.world.camera.shot == rests
 
 
 def test_another_language_is_spoken_at_once(watching: Driver, written: list[str]):
-    names = ("WATCH_MODEL", "WATCH_COUNT", "WATCH_SPEED", "WATCH_MAP")
+    names = ("WATCH_MODEL", "WATCH_COUNT", "WATCH_SPEED")
     english = {getattr(texts, name) for name in names}
     with watching.speaking("de"):
         written.clear()

@@ -9,8 +9,9 @@ import pytest
 
 from ai.lander.environment import Outcome
 from game.core import texts
+from game.core.catalogue import capital
 from game.scenes.watch.scene import WatchScene
-from game.scenes.watch.touch import FASTEST, NOTCH, PLACE, SPEED, TILT, Hand
+from game.scenes.watch.touch import FASTEST, NOTCH, Hand
 from game.ui.context import Context
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver
@@ -47,7 +48,7 @@ def check_decision(driver: Driver) -> None:
     watch = scene(driver)
     slot, swarm, shown = watch.world.shown, watch.swarm, watch.decision
     assert np.array_equal(shown.observation[0], swarm.env.observe()[slot])
-    policy = watch.network.policy
+    policy = watch.flyer.network.policy
     assert policy is not None
     assert shown.action[0] == policy.act(shown.observation)[0]
     if shown.points is not None:
@@ -120,73 +121,82 @@ def test_no_hand_puts_it_into_the_ground_or_out_of_sight(watching: Driver):
         assert abs(x) <= env.limits.half_width
         assert env.lowest(x, float(env.angle[0])) <= y <= env.limits.ceiling
         assert 0 < hand(watching).middle[0] < 950
-    watching.keys(*[pygame.K_q] * 20)
+    watching.post(pygame.MOUSEWHEEL, x=0, y=20)
     check_decision(watching)
 
 
 @pytest.mark.parametrize("device", DEVICES)
-def test_keys_and_gamepad_move_tilt_and_throw(watching: Driver, device: str):
-    player, keys = Player(watching, device), device == "keys"
+def test_keys_and_gamepad_move_tilt_and_throw_with_a_pointer(watching: Driver, device: str):
+    player = Player(watching, device)
 
-    def press(key: int, button: int) -> None:
-        watching.key(key) if keys else watching.button(button)
+    def point_at(place: tuple[float, float]) -> None:
+        for axis, (less, more) in enumerate((("left", "right"), ("up", "down"))):
+            name = less if place[axis] < hand(watching).place[axis] else more
+            player.hold(name, down=True)
+            while (hand(watching).place[axis] < place[axis]) is (name == more):
+                watching.skip()
+            player.hold(name, down=False)
 
-    def hold(name: str) -> np.ndarray:
+    def pull(grip: tuple[float, float], name: str) -> np.ndarray:
+        point_at(grip)
         before = state(watching)
+        player.hold("confirm", down=True)
         player.hold(name, down=True)
         watching.skip(11)
         player.hold(name, down=False)
+        player.hold("confirm", down=False)
         return state(watching) - before
 
-    press(pygame.K_g, pygame.CONTROLLER_BUTTON_LEFTSTICK)
+    watching.key(pygame.K_SPACE) if device == "keys" else player.press("hand over")
     assert scene(watching).playback.stopped
-    for part, places in ((PLACE, (0, 1)), (SPEED, (2, 3))):
-        while hand(watching).part != part:
-            player.press("confirm")
-        for name, way in {"left": [-1, 0], "right": [1, 0], "up": [0, 1], "down": [0, -1]}.items():
-            moved = hold(name)
-            assert np.sign(np.round(moved[list(places)], 3)).tolist() == way
-            assert not np.delete(moved, places).any()
-    while hand(watching).part != TILT:
-        player.press("confirm")
-    assert hold("left")[4] > 0.1
-    assert hold("right")[4] < -0.1
-    press(pygame.K_q, pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
-    before = state(watching)[4]
-    press(pygame.K_e, pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-    assert state(watching)[4] == pytest.approx(before - NOTCH)
+    player.press("confirm")
+    for name, way in {"left": [-1, 0], "right": [1, 0], "up": [0, 1], "down": [0, -1]}.items():
+        moved = pull(hand(watching).middle, name)
+        assert np.sign(np.round(moved[:2], 3)).tolist() == way
+        assert not moved[2:].any()
+    moved = pull(hand(watching).tilt_knob, "left")
+    assert moved[4] > 0.1
+    assert not moved[:4].any()
+    tip = hand(watching).arrow[1]
+    moved = pull(tip, "right")
+    assert moved[2] > 0.1
+    assert not moved[[0, 1, 4]].any()
     check_decision(watching)
-    press(pygame.K_z, pygame.CONTROLLER_BUTTON_X)
-    assert not scene(watching).world.touched
-    press(pygame.K_BACKSPACE, pygame.CONTROLLER_BUTTON_B)
+    player.press("back")
     assert not hand(watching).typing
     assert watching.top_name == "WatchScene"
 
 
-def test_the_stick_moves_it_and_going_on_lets_go(watching: Driver):
-    watching.button(pygame.CONTROLLER_BUTTON_LEFTSTICK)
-    before = state(watching)
+def test_the_stick_moves_the_pointer_and_going_on_lets_go(watching: Driver):
+    watching.button(pygame.CONTROLLER_BUTTON_Y)
+    watching.button(pygame.CONTROLLER_BUTTON_A)
+    assert hand(watching).typing
+    before = hand(watching).place.x
     watching.axis(pygame.CONTROLLER_AXIS_LEFTX, -30000)
     watching.frames(10)
     watching.axis(pygame.CONTROLLER_AXIS_LEFTX, 0)
-    assert state(watching)[0] < before[0] - 0.3
+    assert hand(watching).place.x < before - 20
     watching.button(pygame.CONTROLLER_BUTTON_Y)
     watching.frames(2)
     assert not scene(watching).playback.stopped
     assert not hand(watching).typing
 
 
+def undo(driver: Driver) -> None:
+    driver.press_on(capital(texts.HINT_UNTOUCH))
+
+
 def test_the_way_back_leads_to_the_very_moment_before_the_hand_came(watching: Driver):
     twin = scene(watching).swarm
     watching.key(pygame.K_SPACE)
     before, decision = state(watching), scene(watching).decision
-    assert pygame.K_z not in {action.key for action in scene(watching).actions()}
+    assert watching.form.find(capital(texts.HINT_UNTOUCH)) is None
     middle = hand(watching).middle
     drag(watching, middle, (middle[0] - 150, middle[1]))
-    watching.key(pygame.K_q)
+    watching.post(pygame.MOUSEWHEEL, x=0, y=1)
     watching.key(pygame.K_SPACE)
     watching.frames(30)  # and flies on, before it is undone
-    watching.key(pygame.K_z)
+    undo(watching)
     assert scene(watching).playback.stopped
     assert np.array_equal(state(watching), before)
     assert scene(watching).decision.action == decision.action
@@ -199,17 +209,18 @@ def test_the_way_back_leads_to_the_very_moment_before_the_hand_came(watching: Dr
         flown.append(state(watching))
         twin.restore(moment)
     assert np.array_equal(*flown)
-    watching.key(pygame.K_z)
-    assert np.array_equal(state(watching), before)
+    watching.frames(1)
+    assert watching.form.find(capital(texts.HINT_UNTOUCH)) is None
 
 
 def test_a_touched_flight_is_not_counted_and_says_so(open_game: Open, context: Context, tmp_path, monkeypatch):
     context.models_dir = tmp_path  # only the scripted pilot is here
     driver = open_game(WatchScene, seed=2)
     driver.frames(5)
-    driver.keys(pygame.K_SPACE, pygame.K_q)
+    driver.key(pygame.K_SPACE)
+    driver.post(pygame.MOUSEWHEEL, x=0, y=1)
     watch = scene(driver)
-    watch.problem = ""
+    watch.flyer._problem = ""
     drawn = Drawn(monkeypatch)
     driver.app.draw()
     assert texts.TOUCH_COUNTS in drawn.words
@@ -233,9 +244,8 @@ def test_a_wreck_flies_again_and_only_the_shown_one_of_a_swarm_is_touched(open_g
     driver.key(pygame.K_SPACE)
     others = np.arange(64) != watch.world.shown
     before = watch.swarm.env.observe()[others]
-    driver.key(pygame.K_g)
-    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
-    driver.frames(60)
+    middle = hand(driver).middle
+    drag(driver, middle, (middle[0], middle[1] - 100))
     assert watch.swarm.env.outcome[watch.world.shown] == Outcome.FLYING
     assert np.array_equal(watch.swarm.env.observe()[others], before)
     assert watch.swarm.touched.sum() == 1
@@ -247,12 +257,11 @@ def test_a_lander_that_flies_cannot_be_dragged(watching: Driver):
     drag(watching, middle, (middle[0] - 200, middle[1]))
     assert not scene(watching).world.touched
     watching.post(pygame.MOUSEWHEEL, x=0, y=2)
-    watching.key(pygame.K_q)
     assert not scene(watching).world.touched
 
 
 def test_the_frame_around_the_lander_goes_when_the_flight_goes_on(watching: Driver):
-    watching.key(pygame.K_g)
+    watching.key(pygame.K_SPACE)
     assert watching.form.focused is hand(watching)
     watching.key(pygame.K_SPACE)
     watching.frames(2)

@@ -68,6 +68,19 @@ def in_flight(driver: Driver) -> None:
     driver.frames(50)
 
 
+def touched(driver: Driver) -> None:
+    """Stop, and tilt the lander."""
+    driver.key(pygame.K_SPACE)
+    driver.post(pygame.MOUSEWHEEL, x=0, y=1)
+    driver.frames(2)
+
+
+def mapped(driver: Driver) -> None:
+    """Colour the sky."""
+    driver.top._choose_map(1)
+    driver.frames(60)
+
+
 STOPS = [
     *map(Stop, (*SCREENS, *FLOWN, *OVER_OTHERS)),
     *(
@@ -77,9 +90,9 @@ STOPS = [
     Stop("NetworksScene", "naming", keys(pygame.K_F2)),
     Stop("BindingsScene", "binding", keys(pygame.K_RETURN)),
     Stop("WatchScene", "stopped", keys(pygame.K_SPACE)),
-    Stop("WatchScene", "touched", keys(pygame.K_SPACE, pygame.K_q, pygame.K_m)),
-    Stop("WatchScene", "under a map", keys(pygame.K_m)),
-    Stop("WatchScene", "explained", keys(pygame.K_SPACE, pygame.K_g, pygame.K_UP, pygame.K_F1)),
+    Stop("WatchScene", "touched", touched),
+    Stop("WatchScene", "under a map", mapped, {"opened": "watch"}),
+    Stop("WatchScene", "explained", keys(pygame.K_SPACE, pygame.K_RETURN, pygame.K_UP, pygame.K_F1)),
     Stop("swarm", "after a while", keys(frames=400)),
     Stop("Play", "flown by the network", keys(pygame.K_TAB)),
     Stop("Play", "in flight", in_flight),

@@ -53,7 +53,7 @@ def every_widget_is_reached(player: Player) -> None:
 
 def is_seen(player: Player, widget: Widget) -> bool:
     """Whether the picture around a widget changes when the focus comes to it."""
-    form, canvas = player.form, player.top.laid_on(player.app.canvas)
+    form, canvas = player.form, player.app.canvas.reading
     pictures = []
     for focused in (next((each for each in form.widgets if each is not widget), widget), widget):
         form.focus(focused)

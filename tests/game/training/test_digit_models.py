@@ -12,7 +12,7 @@ from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from game.core.assets import MODELS_DIR
 from game.scenes.digits.reader import Reader
 from game.scenes.digits.scene import DigitsScene
-from game.training.digit_models import called, models_by_name, runs_dir
+from game.training.library import DigitModels, called, models_by_name
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.pen import draw, guess, strokes
@@ -26,7 +26,7 @@ CONFIGS = [
 
 
 def save(context: Context, name: str, config=CONFIGS[0]) -> Path:
-    folder = runs_dir(context.user_dir) / name
+    folder = DigitModels(context.user_dir).folder / name
     DigitClassifier(build_digit_network(config, np.random.default_rng(0))).save(folder)
     return folder
 
@@ -47,7 +47,7 @@ def reading(open_game: Callable[..., Driver], context: Context) -> Driver:
 def test_names_are_those_of_folders_and_none_hides_another(context: Context):
     for name in ("zero", "Modern", ".training"):
         save(context, name)
-    (runs_dir(context.user_dir) / "notes").mkdir()
+    (DigitModels(context.user_dir).folder / "notes").mkdir()
     found = models_by_name(MODELS_DIR, context.user_dir)
     assert list(found) == ["modern", "classic", "Modern (yours)", "zero"]
     assert [called(name) for name in found] == ["Modern", "Classic", "Modern (yours)", "zero"]
@@ -76,14 +76,14 @@ def test_each_of_them_can_be_chosen(open_game: Callable[..., Driver], own: list[
 def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
     driver = reading(open_game, context)
     driver.press_on("Train")
-    assert driver.top_name == "DigitTrainingScene"
+    assert driver.top_name == "TrainScene"
     save(context, "mine")
     driver.key(pygame.K_ESCAPE)
     assert driver.choice("Modern").options[-1] == "mine"
 
 
 def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver], context: Context, own: list[str]):
-    (runs_dir(context.user_dir) / own[0] / "config.json").write_text("{", encoding="utf-8")
+    (DigitModels(context.user_dir).folder / own[0] / "config.json").write_text("{", encoding="utf-8")
     driver = reading(open_game, context)
     driver.choice(own[0]).choose(2)
     assert driver.top.chosen == "modern"

@@ -6,8 +6,8 @@ from typing import Any
 import pygame
 import pytest
 
-from game.core.names import fitting
 from game.core.scene import Transition
+from game.core.shelf import fitting
 from game.input.bindings import Command
 from game.ui.context import Context
 from game.ui.entry import TextLine

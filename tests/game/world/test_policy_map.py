@@ -131,22 +131,15 @@ def scene(driver: Driver) -> WatchScene:
     return driver.top
 
 
-def test_a_key_a_button_and_the_row_choose_the_map(open_game: Open, context: Context):
+def test_a_button_and_the_mouse_choose_the_map(open_game: Open, context: Context):
     driver = open_game(WatchScene, seed=2)
-    assert scene(driver).network.name == "modern"
-    shown = []
-    for _ in range(3):
-        driver.key(pygame.K_m)
-        shown.append(scene(driver).world.policy_map.on)
-    assert shown == [True, False, True]
-    driver.key(pygame.K_m)
-    row = driver.widget(texts.WATCH_MAP)
-    for _ in range(3):
-        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    assert driver.form.focused is row
+    assert scene(driver).flyer.network.name == "modern"
+    driver.press_on(texts.MORE[0])
+    driver.frames(2)
+    driver.form.focus(driver.widget(texts.WATCH_MAP))
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     driver.frames(20)
     assert scene(driver).world.policy_map.on
     assert scene(driver).world.policy_map.cells is not None
-    driver.click(row._places[0].center)
+    driver.click(driver.widget(texts.WATCH_MAP)._places[0].center)
     assert not scene(driver).world.policy_map.on

@@ -7,11 +7,16 @@ import pytest
 
 from ai.digits.config import DIGIT_PRESETS
 from ai.files import read_as
-from ai.sweep.plan import Dimension, Metric, Point, knob_dimension, knob_space, read_space
+from ai.sweep.design import Dimension, Measurement, Metric, knob_dimension, knob_space, read_space
 from ai.training.config import PRESETS
 
 MODERN = PRESETS["modern"]
-CURVE = [Point(100, 0.0, -5.0), Point(200, 0.96, 1.0), Point(300, 0.99, 2.0), Point(400, 0.97, 3.0)]
+CURVE = [
+    Measurement(100, 0.0, -5.0),
+    Measurement(200, 0.96, 1.0),
+    Measurement(300, 0.99, 2.0),
+    Measurement(400, 0.97, 3.0),
+]
 
 
 def test_a_metric_reads_a_curve_and_gives_a_diverged_seed_the_worst_value():
@@ -36,7 +41,7 @@ def test_a_metric_reads_a_curve_and_gives_a_diverged_seed_the_worst_value():
 
 def test_a_share_never_reached_counts_for_more_than_the_whole_run_and_the_nearer_the_better():
     metric = Metric.named("time_to_99")
-    far, near = ([Point(400, share, 0.0)] for share in (0.1, 0.9))
+    far, near = ([Measurement(400, share, 0.0)] for share in (0.1, 0.9))
     values = [metric.of(near, 400), metric.of(far, 400), metric.of(near, 400, True)]
     assert values == sorted(values, key=lambda value: value or 0.0)
     assert min(value or 0.0 for value in values) > 400

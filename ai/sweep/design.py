@@ -1,4 +1,4 @@
-"""Plan of a study: what is trained, which knobs are searched where, and what trials are compared by.
+"""Design of a study: what is trained, which knobs are searched where, and what trials are compared by.
 
 A curve is measured without random actions on validation episodes, at fixed numbers of decisions (digits: epochs on
 the images held out), so a metric is the same on a slow machine and on a fast one.
@@ -25,8 +25,8 @@ _MEASURED: Final = 5  # times that a run is measured, unless asked otherwise
 
 
 @dataclass(frozen=True)
-class Point:
-    """Point of a learning curve."""
+class Measurement:
+    """Measurement of a learning curve."""
 
     at: Count  # decisions so far, or epochs
     success: Share | None  # of episodes that ended well, or of digits read right; None where that is not defined
@@ -54,7 +54,7 @@ class Metric:
         """1 where less is better, -1 where more is."""
         return 1 if self.kind == "time" else -1
 
-    def of(self, curve: Sequence[Point], budget: int, diverged: bool = False) -> float | None:
+    def of(self, curve: Sequence[Measurement], budget: int, diverged: bool = False) -> float | None:
         """Return the value of one seed's curve so far, of a run of `budget`; None before the first point.
 
         A share that has not been reached counts as more than the whole budget: the more, the farther it was missed.
@@ -111,7 +111,7 @@ Space = dict[str, Dimension]
 
 
 @dataclass(frozen=True)
-class Plan:
+class Design:
     """All that was asked for when a study began."""
 
     kind: Annotated[str, OneOf((AGENT, DIGITS))]  # of its runs
@@ -131,7 +131,7 @@ class Plan:
         cls, config: Knobs, space: Space, *, seeds: int = 3, decisions: int = 250_000, every: int | None = None,
         metric: str | None = None, **others: Any,
     ) -> Self:  # fmt: skip
-        """Return the plan of a study of runs with these settings, with what is usual for their kind."""
+        """Return the design of a study of runs with these settings, with what is usual for their kind."""
         settings = json.loads(json.dumps(config.to_json()))
         if digits := isinstance(config, DigitConfig):
             budget, usual = config.epochs, "accuracy"
@@ -208,7 +208,8 @@ def knob_space(config: Knobs, names: Iterable[str]) -> Space:
     """
     space: Space = {}
     for name in names:
-        group = [item.name for item in fields(config) if item.metadata["group"] == name]
+        # The name of the preset is no setting to search.
+        group = [item.name for item in fields(config) if item.metadata["group"] == name and item.compare]
         for each in [each for each in group if each not in config.unused()] or [name]:
             space[each] = knob_dimension(config, each)
     return space

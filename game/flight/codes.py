@@ -1,4 +1,4 @@
-"""Flights between friends: a record as a shared flight and back, and reading one from any text or file."""
+"""Flights between friends: a record with its claim and back, and reading one from any text or file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 
 from ai.files import read_text
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
-from ai.flights.recording import Claim, SharedFlight, StickHolder
+from ai.flights.recording import Claim, ClaimedFlight, StickHolder
 from ai.flights.verification import DAILY, DESCENT, Earned, day_of, in_its_place
 from ai.lander.environment import Outcome
 from ai.lander.rules import tenths
@@ -22,21 +22,21 @@ from game.flight.flight_file import Entry, Record
 DROPPED: Final = 1_000_000  # bytes of a file that is dropped on the window, at most
 
 
-def shared(record: Record) -> SharedFlight:
-    """Return a record as it is sent to a friend."""
+def claimed(record: Record) -> ClaimedFlight:
+    """Return a record as it is sent to a friend, with what it claims."""
     entry = record.entry
     claim = Claim(Outcome[entry.outcome], entry.score, record.end, entry.medal)
     course = entry.course or record.recording.mission
-    return SharedFlight(record.recording, claim, course, entry.bar if not entry.alone else "")
+    return ClaimedFlight(record.recording, claim, course, entry.bar if not entry.alone else "")
 
 
 def code(record: Record) -> str:
     """Return a record as a code for a message."""
-    return code_of(shared(record))
+    return code_of(claimed(record))
 
 
-def record_of(flight: SharedFlight, when: float) -> Record:
-    """Return the record of a shared flight as it is claimed."""
+def record_of(flight: ClaimedFlight, when: float) -> Record:
+    """Return the record of a flight as it is claimed."""
     recording, claim = flight.recording, flight.claim
     seconds = len(recording.pushes) * DT
     by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
@@ -47,11 +47,11 @@ def record_of(flight: SharedFlight, when: float) -> Record:
     return Record(recording, entry, claim.end)
 
 
-def flights_in(text: str) -> Iterator[SharedFlight | str]:
+def flights_in(text: str) -> Iterator[ClaimedFlight | str]:
     """Yield the flights of a text, a flight's file or any text with codes; for one that is refused, the reason."""
     if text.lstrip("\ufeff \t\r\n").startswith("{"):
         try:
-            yield shared(flight_file.from_text(text.lstrip("\ufeff")))
+            yield claimed(flight_file.from_text(text.lstrip("\ufeff")))
         except ValueError as error:
             yield str(error)
         return
@@ -66,7 +66,7 @@ def flights_in(text: str) -> Iterator[SharedFlight | str]:
         yield texts.CODE_REFUSED["none"]
 
 
-def flight_in(text: str) -> SharedFlight:
+def flight_in(text: str) -> ClaimedFlight:
     """Return the first flight of a text; raises ValueError, which says why there is none."""
     flight = next(flights_in(text))
     if isinstance(flight, str):
@@ -74,7 +74,7 @@ def flight_in(text: str) -> SharedFlight:
     return flight
 
 
-def flight_in_file(path: Path) -> SharedFlight:
+def flight_in_file(path: Path) -> ClaimedFlight:
     """Return the first flight of a file of any kind; raises ValueError, which says why there is none."""
     try:
         return flight_in(read_text(path, DROPPED))
@@ -90,7 +90,7 @@ def words(claim: Claim | Earned) -> str:
     return texts.EARNED_MEDAL.format(earned=said, medal=texts.MEDALS[claim.medal]) if claim.medal in (1, 2, 3) else said
 
 
-def why_wrong(flight: SharedFlight, real: Earned) -> str:
+def why_wrong(flight: ClaimedFlight, real: Earned) -> str:
     """Return what is wrong with a claim that is not true: the place, what was earned, or where the flight ended."""
     if not in_its_place(flight):
         return texts.WRONG_PLACE
@@ -100,7 +100,7 @@ def why_wrong(flight: SharedFlight, real: Earned) -> str:
     return texts.WRONG_CLAIM.format(claim=words(claim))
 
 
-def where(flight: SharedFlight) -> str:
+def where(flight: ClaimedFlight) -> str:
     """Return where a flight says it was flown, with the day, the tank, and what makes it easier there."""
     recording = flight.recording
     leg, day = recording.leg, day_of(recording.seed)

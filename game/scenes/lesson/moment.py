@@ -1,4 +1,4 @@
-"""Frame of the flight: the moment in a picture, what each decision was paid, and what was sensed before and after."""
+"""The first three cards of a lesson: the moment, the six values for it, and what came of the one that was taken."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ import pygame
 from ai.agent.n_step import NStep
 from ai.environment import Doubles, Floats
 from ai.explain.agent_lesson import Flown, Lesson
-from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
+from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, LanderEnv, Outcome
+from ai.nn import NeuralNetwork
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.explain.figures import decimal, points, what_is_sensed
-from game.explain.tables import Line, figure_rows, table
-from game.scenes.lesson.frame import Frame, in_points
+from game.explain.tables import Line, figure_rows, from_zero, table
+from game.scenes.lesson.card import Card, in_points
 from game.ui.panel import Column
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft
@@ -27,11 +28,12 @@ from game.world.lander import LANDER
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
 
-_LEAST, _HIGH = 300.0, 170.0  # width of a column, height of the picture
+_LEAST, _HIGH = 300.0, 300.0  # width of a column, height of the picture
 _ARROW: Final = 9.0  # points of the velocity's arrow for each metre per second
 _MOON: Final = 5
 _DIGITS: Final = (2, 2, 2, 2, 3, 3, 3)
 _UNITS: Final = (0, 0, 1, 1, None, None, 2)  # of each feature, among the texts; None for a plain number
+_HEIGHT: Final = 1  # number of the feature
 
 
 def said_action(action: int) -> str:
@@ -53,8 +55,31 @@ def sensed(value: float, feature: int) -> str:
     return figure if unit is None else texts.LESSON_UNITS[unit].format(value=figure)
 
 
-def _paint(width: float, units: list[float], action: int, canvas: Canvas) -> None:
-    """Paint the moon with the lander, its engines and an arrow for its velocity, on a sheet of that width."""
+def moment_card(lesson: Lesson) -> Card:
+    """Return the card of the moment: where the lander is, and the nine numbers that say so."""
+    units, cache = in_units(lesson.cell.state).tolist(), PaintCache()
+
+    def draw(canvas: Canvas, box: pygame.FRect) -> None:
+        wide = min(box.width, box.height * VIEW_SIZE[0] / VIEW_SIZE[1])
+        high = wide * VIEW_SIZE[1] / VIEW_SIZE[0]
+        cache.draw(canvas, (*box.topleft, wide, high), (), partial(_paint, wide, units))
+
+    def describe(column: Column) -> None:
+        left, right = column.beside((1, 1), _LEAST)
+        left.picture(_HIGH, draw)
+        lines = [
+            Line((name, sensed(units[feature], feature)), what_is_sensed(feature))
+            for feature, name in enumerate(texts.INPUTS)
+        ]
+        right.add(table((), lambda: lines))
+
+    words, slot = texts.LESSON_CARDS["moment"], lesson.flown.slot + 1 if lesson.flown else 1
+    return Card(words[0], words[1].format(slot=slot), sensed(units[_HEIGHT], _HEIGHT), (LanderEnv.observe,),
+                describe=describe)  # fmt: skip
+
+
+def _paint(width: float, units: list[float], canvas: Canvas) -> None:
+    """Paint the moon with the lander and an arrow for its velocity, on a sheet of that width."""
     share = width / VIEW_SIZE[0]
     moon = pygame.Surface(canvas.size)
     Backdrop(canvas.size, np.random.default_rng(_MOON), reduced_motion=True).paint(moon)
@@ -63,46 +88,57 @@ def _paint(width: float, units: list[float], action: int, canvas: Canvas) -> Non
     view = View(canvas.scale, (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1]), share)
     draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
     place = np.array([units[0], units[1] + PARAMS.pad_top + PARAMS.stand])
-    thrust = np.array([action >= 3, action % 3 == 2, action % 3 == 1], float)
-    draw_craft(canvas, view, LANDER, np.array([*place, math.atan2(units[4], units[5])]), thrust, 1.0, 0, 1.5)
+    draw_craft(canvas, view, LANDER, np.array([*place, math.atan2(units[4], units[5])]), np.zeros(3), 1.0, 0, 1.5)
     (x, y), across, up = view.points(place).tolist(), units[2] * _ARROW, units[3] * _ARROW
     if math.hypot(across, up) > 2:
         canvas.line((x, y), (x + across, y - up), INK, 1.5)
         canvas.dot((x + across, y - up), 2.5, INK)
 
 
-def happened_frame(lesson: Lesson) -> Frame:
-    """Return the frame of what happened: the moment, action and pay of each decision, and the state after."""
+def values_card(lesson: Lesson) -> Card:
+    """Return the card of the six values, and which action was taken."""
+    values = (lesson.predicted / lesson.config.reward_scale).tolist()
+    taken, best = int(lesson.cell.action), int(lesson.predicted.argmax())
+    lines = [
+        Line((said_action(action), points(value)), texts.LESSON_VALUE_HELP, lit=action == taken,
+             bars=[from_zero(value, min(values), max(values))])
+        for action, value in enumerate(values)
+    ]  # fmt: skip
+    words, why = texts.LESSON_CARDS["values"], texts.LESSON_TAKEN[taken == best]
+    said = why.format(action=said_action(taken), value=points(values[taken]), best=said_action(best),
+                      higher=points(values[best]))  # fmt: skip
+
+    def describe(column: Column) -> None:
+        column.beside((1, 1), _LEAST)[0].add(table((), lambda: lines))
+
+    return Card(words[0], f"{words[1]} {said}", in_points(values[taken]), (NeuralNetwork.predict,), describe=describe)
+
+
+def came_card(lesson: Lesson) -> Card:
+    """Return the card of what came: the pay of each decision, how the flight ended, and the state after."""
     flown, count, discount = lesson.flown, int(lesson.cell.steps), lesson.config.discount
     pay = float(lesson.cell.reward) / lesson.config.reward_scale
     before, after = (in_units(each).tolist() for each in (lesson.cell.state, lesson.cell.next_state))
-    cache = PaintCache()
-
-    def draw(canvas: Canvas, box: pygame.FRect) -> None:
-        wide = min(box.width, box.height * VIEW_SIZE[0] / VIEW_SIZE[1])
-        high = wide * VIEW_SIZE[1] / VIEW_SIZE[0]
-        cache.draw(canvas, (*box.topleft, wide, high), (), partial(_paint, wide, before, int(lesson.cell.action)))
 
     def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
-        left.picture(_HIGH, draw)
-        left.gap(6)
         lines = _decisions(flown, discount) if flown else []
         words = texts.LESSON_RETURN.format(discount=f"{discount:g}", count=count)
         whole = Line((words, *[""] * (2 if flown else 0), points(pay)), texts.LESSON_RETURN_HELP, lit=True)
         left.add(table(texts.LESSON_PAY if flown else (), lambda: [*lines, whole]))
         if flown is None:
             left.aside(texts.LESSON_NOT_KNOWN)
+        elif flown.outcome != Outcome.FLYING:
+            left.text(texts.LESSON_OUTCOMES[flown.outcome - 1], size=SMALL)
         changes = [
             Line((name, sensed(before[feature], feature), sensed(after[feature], feature)), what_is_sensed(feature))
             for feature, name in enumerate(texts.INPUTS)
         ]
         head = (texts.LESSON_AFTER.format(count=count), texts.LESSON_BEFORE, texts.LESSON_NOW)
         right.add(table(head, lambda: changes))
-        if flown is not None and flown.outcome != Outcome.FLYING:
-            right.text(texts.LESSON_OUTCOMES[flown.outcome - 1], size=SMALL)
 
-    return Frame(texts.LESSON_FRAMES["happened"], in_points(pay), (NStep.add,), "self._returns", describe)
+    words = texts.LESSON_CARDS["came"]
+    return Card(words[0], words[1], in_points(pay), (NStep.add,), "self._returns", describe)
 
 
 def _decisions(flown: Flown, discount: float) -> list[Line]:
@@ -116,6 +152,6 @@ def _decisions(flown: Flown, discount: float) -> list[Line]:
             if paid[place]
         ]
         factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
-        cells = (said_action(action), points(pay), f"× {factor:.3f}", points(pay * factor))
+        cells = (said_action(action), points(pay), f"× {factor:.4f}", points(pay * factor))
         lines.append(Line(cells, what, figure_rows(*parts, (texts.LESSON_IN_ALL, points(pay)))))
     return lines

@@ -1,4 +1,4 @@
-"""Frame of a lesson: a sentence, and rows with numbers of the step that explain themselves; and the code beside it."""
+"""Card of a lesson: a sentence, and rows with numbers that explain themselves; and the code beside it."""
 
 from __future__ import annotations
 
@@ -18,31 +18,30 @@ from game.explain.figures import number, points, signed
 from game.ui.panel import Column
 
 
-class Frame:
-    """One of the frames of a lesson; what has a state of its own is a subclass.
+class Card:
+    """One of the cards of a lesson; what has a state of its own is a subclass.
 
     Attributes:
-        name: its name, on its card.
-        sentence: the field's term for what happens here, then plain words for it.
-        figure: the one figure that stands for it on its card.
+        name: its name.
+        sentence: what happens here: the field's term, then plain words for it.
+        figure: the one figure that stands for it.
         functions: the functions whose lines are shown beside it.
-        changed: set when there are other rows than before; the scene describes them anew.
         begin: variable that the line sets which is lit at first; empty for any.
+        changed: set when there are other rows than before; the scene describes them anew.
 
     """
 
     def __init__(
         self,
-        words: Sequence[str],
+        name: str,
+        sentence: str,
         figure: str,
         functions: Sequence[Function],
         begin: str = "",
         describe: Callable[[Column], None] | None = None,
-        sentence: str = "",
     ) -> None:
-        self.name, self.sentence, self._describe = words[0], sentence or words[1], describe
-        self.figure, self.functions, self.begin = figure, tuple(functions), begin
-        self.changed = False
+        self.name, self.sentence, self.figure, self._describe = name, sentence, figure, describe
+        self.functions, self.begin, self.changed = tuple(functions), begin, False
 
     def describe(self, column: Column) -> None:
         """Add the rows."""
@@ -53,7 +52,7 @@ class Frame:
         """Follow the pointer, in points; None while it is nowhere."""
 
     def update(self, still: bool) -> None:
-        """Advance by 1/60 s; `still` with reduced motion."""
+        """Advance by 1/60 s while it is shown; `still` with reduced motion."""
 
 
 def in_points(value: float) -> str:
@@ -87,21 +86,21 @@ def in_points_of_reward(line: Line, scale: float) -> Line:
 
 
 class LitCode:
-    """The code of one frame: the lines that ran of its functions, and the one that made what the frame shows.
+    """The code of one card: the lines that ran of its functions, and the one that made what the card shows.
 
     Where none ran, its first function is shown, with no line lit.
 
     Attributes:
-        line: the lit line, the last that set the frame's `begin`, a variable as it is recorded; None where none ran.
+        line: the lit line, the last that set the card's `begin`, a variable as it is recorded; None where none ran.
 
     """
 
-    def __init__(self, lines: Iterable[Line], frame: Frame) -> None:
-        self._functions = {function.__qualname__: function for function in frame.functions}
+    def __init__(self, lines: Iterable[Line], card: Card) -> None:
+        self._functions = {function.__qualname__: function for function in card.functions}
         ran = [line for line in lines if line.function in self._functions]
         # Without such a line, it is where numbers are set first, past the head of the function.
         sets = [place for place, line in enumerate(ran[:-1]) if place and line.values]
-        named = (place for place in reversed(sets) if frame.begin in ran[place].values)
+        named = (place for place in reversed(sets) if card.begin in ran[place].values)
         index = next(named, next(iter(sets), 0))
         self.line = ran[index] if ran else None
         self._before = ran[: index + 1]

@@ -1,0 +1,149 @@
+"""Two flights from one start, side by side, three times as fast as life."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.lander.environment import Outcome
+from ai.training.messages import SwarmState
+from ai.training.upbringing import Flight, Question
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import INK, LINE, MUTE, NIGHT0, SMALL
+from game.scenes.taste.run import PACE
+from game.ui.widget import RowWidget
+from game.world.swarm import LearningSwarm
+
+_GAP: Final = 12.0  # points between them
+
+
+class Small:
+    """A picture of landers in a box of a panel's row."""
+
+    def __init__(self) -> None:
+        self.swarm = LearningSwarm()
+        self.box = pygame.FRect(0, 0, 1, 1)
+        self._picture: Canvas | None = None
+
+    def place(self, box: pygame.FRect) -> None:
+        """Move to a box, in points."""
+        if box.size != self.box.size:
+            self.swarm.place(pygame.FRect(0, 0, *box.size))
+            self._picture = None
+        self.box = box.copy()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw it where it is."""
+        if self._picture is None or self._picture.scale != canvas.scale:
+            self._picture = canvas.picture(*self.box.size)
+        self.swarm.draw(self._picture, alpha)
+        canvas.surface.blit(self._picture.surface, canvas.rect(*self.box))
+
+
+class Pair:
+    """The two flights of a question.
+
+    Attributes:
+        question: what is asked; None while nothing is.
+        halves: the picture of each flight.
+
+    """
+
+    def __init__(self) -> None:
+        self.question: Question | None = None
+        self.halves = Small(), Small()
+        self._at = 0.0  # decisions since they began
+
+    def ask(self, question: Question | None) -> None:
+        """Show another question, from its beginning."""
+        self.question = question
+        self.again()
+
+    def again(self) -> None:
+        """Fly both again."""
+        self._at = 0.0
+        for half in self.halves:
+            half.swarm.clear()
+        self._take(0)
+
+    def update(self, still: bool) -> None:
+        """Advance by 1/60 s."""
+        before = int(self._at)
+        self._at += PACE / 60
+        if int(self._at) != before:
+            self._take(int(self._at))
+        for half in self.halves:
+            half.swarm.update(still)
+
+    def _take(self, at: int) -> None:
+        for half, flight in zip(self.halves, self.question or (), strict=False):
+            last = len(flight.actions)
+            if at <= last:
+                half.swarm.take(_seen(flight, at))
+
+    def over(self, side: int) -> bool:
+        """Whether a flight has come to its end."""
+        return self.question is not None and self._at >= len(self.question[side].actions)
+
+    def place(self, box: pygame.FRect) -> None:
+        """Move to a box."""
+        wide = (box.width - _GAP) / 2
+        for number, half in enumerate(self.halves):
+            half.place(pygame.FRect(box.left + number * (wide + _GAP), box.top, wide, box.height))
+
+    def draw(self, canvas: Canvas, alpha: float, waits: str) -> None:
+        """Draw both, or say what is waited for."""
+        pointer = canvas.pointer
+        for side, half in enumerate(self.halves):
+            if self.question is None:
+                canvas.fill(canvas.rect(*half.box), NIGHT0)
+                canvas.text(waits, half.box.center, size=SMALL, colour=MUTE, align="centre")
+                continue
+            half.draw(canvas, alpha)
+            if self.over(side):
+                word = texts.OUTCOMES[Outcome(self.question[side].outcome).name][0]
+                canvas.text(word, (half.box.left + 12, half.box.top + 24), size=SMALL, colour=INK)
+            pointed = pointer is not None and half.box.collidepoint(pointer)
+            canvas.outline(half.box, 8, INK if pointed else LINE)
+
+
+class PairRow(RowWidget):
+    """The two flights as a row; a click on one of them is an answer, and a press without a mouse flies both again."""
+
+    acts = True
+
+    def __init__(
+        self, pair: Pair, answer: Callable[[int], None], height: Callable[[float], float], waits: Callable[[], str]
+    ) -> None:
+        super().__init__((0, 0, 1, 1), texts.TASTE_AGAIN)
+        self._pair, self._answer, self._height, self._waits = pair, answer, height, waits
+
+    def press(self) -> None:
+        if self.ringed:
+            self._pair.again()
+            return
+        mouse = self.ui_manager.get_mouse_position()
+        for side, half in enumerate(self._pair.halves):
+            if half.box.collidepoint(mouse):
+                self._answer(side)
+
+    def write(self, cursor: Cursor) -> None:
+        box = cursor.take(self._height((cursor.width - _GAP) / 2))
+        if cursor.canvas is None:
+            self._pair.place(box)
+        else:
+            self._pair.draw(cursor.canvas, 1.0, self._waits())
+
+
+def _seen(flight: Flight, at: int) -> SwarmState:
+    """Return a flight after so many decisions, as a swarm of one."""
+    last = len(flight.actions)
+    pose, earned = flight.poses[None, at], np.zeros(1, np.float32)
+    action = np.array([flight.actions[min(at, last - 1)]], np.int8)
+    outcome = np.array([flight.outcome if at == last else Outcome.FLYING], np.int8)
+    return SwarmState(pose[:, :2], pose[:, 2], action, outcome, earned, at)

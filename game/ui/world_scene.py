@@ -1,0 +1,118 @@
+"""Base of the scenes whose words stand in columns of rows over a world, which the camera frames between them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game.core.scene import Pop, Transition
+from game.drawing.tokens import MARGIN, STEP
+from game.ui.form import Form, FormScene
+from game.ui.hints import HintRow, hint_lines
+from game.ui.panel import Panel
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Sequence
+
+    from game.drawing.canvas import Canvas
+    from game.ui.context import Context
+    from game.ui.widget import OnPress
+
+_SIDES: Final = 0.05  # of a window's width, at most `MARGIN`, left free at either side
+_TOP: Final = 18.0  # points above the head
+_SIDE: Final = 280.0  # points of the column at the right side
+_MOST: Final = 0.5  # of the width, that this takes at most, and of the height, that the foot does
+_INSIDE: Final = 18.0  # points from its edge to its rows
+_COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
+_HINTS: Final = 26.0  # points of a line of hints
+_PADS: Final = 26.0  # points above the foot that pads reach down into the ground
+
+
+class WorldScene(FormScene, ABC):
+    """Scene with rows at its head, at its foot and, if there are any, on a panel at its right side.
+
+    A subclass describes them in `describe`, and calls `build` at the end of its constructor, and whenever there are
+    other rows than before.
+
+    Attributes:
+        head, side, foot: the rows.
+        free: what they leave free of the window, in points.
+
+    """
+
+    def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
+        super().__init__(context, on_back)
+        self._on_back = on_back
+        self.head, self.side, self.foot = (Panel(self.form) for _ in range(3))
+        self.free = pygame.FRect(context.reading().view)
+
+    @abstractmethod
+    def describe(self) -> None:
+        """Add the rows."""
+
+    def build(self) -> None:
+        """Describe the rows anew; the focus stays where it was, or near it."""
+        before, self.form = self.form, Form(self.context, self._on_back)
+        self.head, self.side, self.foot = (Panel(self.form) for _ in range(3))
+        self._described = self.state()
+        self.describe()
+        self.form.follow(before)
+        self.lay_out()
+
+    def state(self) -> Hashable:
+        """Return what decides which rows there are; when it changes, they are described anew."""
+        return None
+
+    def reword(self) -> None:
+        self.build()
+
+    def lay_out(self) -> None:
+        """Lay the rows out for the window: the foot first, then what stands above it."""
+        canvas, view = self.context.reading(), self.context.reading().view
+        margin = min(MARGIN, _SIDES * view.width)
+        left, width = margin, view.width - 2 * margin
+        hints = _HINTS * len(self.hint_rows(canvas))
+        self.foot.lay_out(pygame.FRect(left, 0, width, _MOST * view.height), canvas.scale)
+        height = min(self.foot.height, _MOST * view.height)
+        foot = view.bottom - hints - STEP - height
+        self.foot.lay_out(pygame.FRect(left, foot, width, height), canvas.scale)
+        self.free = pygame.FRect(0, 0, view.width, foot)
+        if self.side.rows:
+            wide = min(_SIDE, _MOST * view.width)
+            box = pygame.FRect(view.right - wide - min(margin, 36.0), _TOP, wide, foot - _TOP - STEP)
+            inside = box.inflate(-2 * _INSIDE, -_INSIDE)
+            self.side.lay_out(inside, canvas.scale)
+            self._panel = pygame.FRect(box.left, box.top, wide, min(self.side.height + _INSIDE, box.height))
+            self.free.width = self._panel.left - 2 * STEP
+        self.head.lay_out(pygame.FRect(left, _TOP, self.free.width - 2 * left, foot - _TOP), canvas.scale)
+        top = _TOP + self.head.height
+        if self.side.rows and view.height > view.width:  # a high window has more room below the panel than beside it
+            self.free.width, top = view.width, max(top, self._panel.bottom)
+        self.free.top, self.free.height = top, foot - _PADS - top
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        view = canvas.view
+        margin = min(MARGIN, _SIDES * view.width)
+        return hint_lines(self.hints, canvas, (margin, view.bottom - STEP), view.width - 2 * margin)
+
+    def update(self) -> Transition | None:
+        outcome = self.form.update()
+        if self.state() != self._described:
+            self.build()
+        self.lay_out()
+        return outcome
+
+    def framed(self, canvas: Canvas) -> Canvas:
+        """Return the canvas on which the world is drawn: its ground is above the foot."""
+        return canvas.above(canvas.view.bottom - self.free.bottom)
+
+    def draw_rows(self, canvas: Canvas) -> None:
+        """Draw the rows over the world."""
+        if self.side.rows:
+            canvas.panel(self._panel, _COVER)
+            self.side.draw(canvas)
+        for panel in (self.head, self.foot):
+            panel.draw(canvas)
+        self.draw_hints(canvas)
