@@ -10,7 +10,6 @@ import numpy as np
 import pygame
 
 from ai.digits.config import DIGIT_PRESETS
-from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
 from game.core.scene import Transition
@@ -160,10 +159,8 @@ class DigitTrainingScene(TrainingScene):
         self._listen()
         if self.matrix.confusion is not run.confusion:
             self.matrix.set(run.confusion)
-        if run.alive and len(history):
-            rate, before = float(history["learning_rate"][-1]), self.knobs.settings.in_force
-            if before is None or before.values["learning_rate"] != rate:
-                self.knobs.show_in_force(InForce({"learning_rate": rate}))
+        if run.alive:
+            self.knobs.show_in_force(run.in_force)
         looked = self.charts.look(history, Beside(run.earlier))
         self.charts.update(at_once=self._settings.reduced_motion, turn=not looked)
         return self._finish_update()
