@@ -21,6 +21,12 @@ LANDERS: Final = RunKind(
         "gradient_steps", "replay_size", "tau", "hidden", "num_envs", "spawn", "reward_weights.distance",
         "reward_weights.time", SEED,
     ),
+    chapters={
+        "learning_rate": "downhill", "final_learning_rate": "downhill", "epsilon_end": "daring",
+        "epsilon_decisions": "daring", "discount": "choice", "n_step": "choice", "batch_size": "memory",
+        "gradient_steps": "memory", "replay_size": "memory", "tau": "target", "hidden": "plane", "num_envs": "memory",
+        "spawn": "pay", "reward_weights.distance": "pay", "reward_weights.time": "pay",
+    },
     sabotages=tuple(SABOTAGES),
 )  # fmt: skip
 DIGITS: Final = RunKind(
@@ -29,5 +35,6 @@ DIGITS: Final = RunKind(
     first=("learning_rate", "batch_size", "dropout"),
     in_force=lambda _, run: InForce({"learning_rate": float(run["learning_rate"][-1])}),
     page=("learning_rate", "batch_size", "dropout", "epochs", "convolutions", "hidden", "augmentation", SEED),
+    chapters={"learning_rate": "downhill", "batch_size": "downhill", "epochs": "downhill", "hidden": "plane"},
     grace=1.0, patience=120.0,  # reading all test images takes long on a busy machine
 )  # fmt: skip

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import Field, asdict, dataclass, fields
+from dataclasses import Field, asdict, dataclass, field, fields
 from functools import cache
 from operator import attrgetter
 from typing import Any, Final, Literal
@@ -169,6 +169,7 @@ class RunKind:
     words: Callable[[], Mapping[str, tuple[str, str]]]  # the label of each preset, and a sentence about it
     first: tuple[str, ...]  # names of the few knobs to begin with
     page: tuple[str, ...]  # and of those on one page, on demand; all others are for `--set` of the command
+    chapters: Mapping[str, str] = field(default_factory=dict)  # of Learn, by the names of the knobs they explain
     sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
     # Values of the scheduled settings at the latest point of a run.
     in_force: Callable[[Configuration, History], InForce] = lambda *_: InForce({})
@@ -267,6 +268,13 @@ class RunSettings:
     def waiting(self) -> list[str]:
         """Names of the knobs whose changes wait for a new run."""
         return self._different(self.draft, self.config) + [SEED] * (self.draft_seed != self.seed)
+
+    def change(self, name: str) -> dict[str, str]:
+        """Return what a setting is in effect, and what it is to be, in words."""
+        if name == SEED:
+            return {"before": figure(self.seed), "after": figure(self.draft_seed)}
+        read = self.knob_descriptions[name].read
+        return {"before": figure(read(self.config)), "after": figure(read(self.draft))}
 
     def now(self, name: str) -> float | None:
         """Return the value in effect at this moment, such as a schedule's; None if it is the knob's own."""
