@@ -156,8 +156,10 @@ def deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
 def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) -> Array:
     """Both ends, (n, 2, 2), of the part of the incident edge that lies beside the reference edge.
 
-    incident     first ─────●━━━━━━━━━━●──── last          ● the ends of the part
-    reference               0 ──────── width               all measured along the reference edge
+    All is measured along the reference edge; ● are the ends of the part:
+
+        incident     first ─────●━━━━━━━━━━●──── last
+        reference               0 ──────── width
     """
     edge = end - start
     tangent = edge / length(edge)[:, None]

@@ -93,9 +93,9 @@ class Polygon:
     def _measure(self) -> None:
         """Work out area, centroid and second moment: sums over the edges, from a to b, as seen from the first vertex.
 
-            A = Σ a × b / 2        centroid = Σ (a + b)·(a × b) / 6A        second moment = Σ (a × b)·(a·a + a·b + b·b) / 12
+            A = Σ a × b / 2      c = Σ (a + b)·(a × b) / 6A      second moment = Σ (a × b)·(a·a + a·b + b·b) / 12
 
-        About the centroid c the second moment is less by A·c·c (parallel axis theorem).
+        That moment is about the first vertex; about the centroid c it is less by A·c·c (parallel axis theorem).
         """
         a = self.vertices - self.vertices[0]
         b = _following(a)
