@@ -41,6 +41,7 @@ from typing import Any
 
 import numpy as np
 import pygame
+from game.scenes.play.choices import ChoicesScene
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
@@ -63,7 +64,6 @@ from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene

@@ -173,34 +173,27 @@ class ShapeTable:
     what the first did not.
     """
 
-    def __init__(
-        self, shapes: Sequence[Shape], bodies: Sequence[int], dynamic: Bools, before: ShapeTable | None = None
-    ) -> None:
-        """Make the table of all `shapes` of these `bodies`; `before` has the first of them already."""
-        self.start: Array
-        self.body = np.array(bodies, dtype=np.intp)
+    def __init__(self, shapes: Sequence[Shape], bodies: Sequence[int], dynamic: Bools) -> None:
+        self.body = np.array(bodies, dtype=np.intp)  # of each shape, rising: a body's shapes stand side by side
+        self.count = np.bincount(self.body, minlength=len(dynamic))  # of each body's shapes
+        self.first = self.count.cumsum() - self.count  # of each body's shapes
         self.fixed = ~dynamic[self.body]
-        new = shapes[len(before) if before else 0 :]
-        self.is_circle = np.array([isinstance(shape, Circle) for shape in new], dtype=bool)
-        self.radius = np.array([shape.radius if isinstance(shape, Circle) else 0.0 for shape in new])
-        self.centre = np.array([shape.centroid for shape in new]).reshape(-1, 2)
-        self.reach = np.array([shape.bounding_radius for shape in new])
-        edges = max([len(shape.vertices) for shape in new if isinstance(shape, Polygon)], default=3)
-        former = before.start.shape[1] if before else 0
-        edges = max(edges, former)
-        self.start, self.end, self.normal = np.zeros((3, len(new), edges, 2))
-        for row, shape in enumerate(new):
-            if isinstance(shape, Polygon):
-                edge = np.minimum(np.arange(edges), len(shape.vertices) - 1)
-                self.start[row] = shape.vertices[edge]
-                self.end[row] = _following(shape.vertices)[edge]
-                self.normal[row] = shape.normals[edge]
-        if before:
-            edge = np.minimum(np.arange(edges), former - 1)
-            for name in ("is_circle", "radius", "centre", "reach"):
-                setattr(self, name, np.concatenate([getattr(before, name), getattr(self, name)]))
-            for name in ("start", "end", "normal"):
-                setattr(self, name, np.concatenate([getattr(before, name)[:, edge], getattr(self, name)]))
+        self.is_circle = np.array([isinstance(shape, Circle) for shape in shapes], dtype=bool)
+        self.radius = np.array([shape.radius if isinstance(shape, Circle) else 0.0 for shape in shapes])
+        self.centre = np.array([shape.centroid for shape in shapes]).reshape(-1, 2)
+        self.reach = np.array([shape.bounding_radius for shape in shapes])
+        polygons = [shape for shape in shapes if isinstance(shape, Polygon)]
+        edges = np.array([len(shape.vertices) for shape in polygons], dtype=np.intp)[:, None]
+        vertices, normals = (
+            np.concatenate([np.zeros((0, 2)), *tables])
+            for tables in ([shape.vertices for shape in polygons], [shape.normals for shape in polygons])
+        )
+        edge = np.minimum(np.arange(edges.max(initial=3)), edges - 1)  # (polygons, edges)
+        begin = edges.cumsum()[:, None] - edges
+        self.start, self.end, self.normal = np.zeros((3, len(shapes), edge.shape[1], 2))
+        self.start[~self.is_circle] = vertices[begin + edge]
+        self.end[~self.is_circle] = vertices[begin + (edge + 1) % edges]
+        self.normal[~self.is_circle] = normals[begin + edge]
 
     def __len__(self) -> int:
         return len(self.body)
@@ -220,6 +213,21 @@ class ShapeTable:
             rotate(self.end[shape], cos, sin) + position,
             rotate(self.normal[shape], cos, sin),
         )
+
+    def pairs_of(self, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+        """Return all pairs of a shape of body `one` (n,) and one of `other`, (m, 2), and which of the n, (m,).
+
+        Of a polygon and a circle, the polygon comes first.
+        """
+        of_other = self.count[other]
+        count = self.count[one] * of_other
+        row = np.repeat(np.arange(len(count)), count)
+        number = np.arange(len(row)) - (count.cumsum() - count)[row]  # from 0 on, of each of the n
+        nth, nth_of_other = np.divmod(number, of_other[row])
+        pair = np.stack([self.first[one][row] + nth, self.first[other][row] + nth_of_other], axis=1)
+        turned = self.is_circle[pair[:, 0]] & ~self.is_circle[pair[:, 1]]
+        pair[turned] = pair[turned, ::-1]
+        return pair, row
 
     def bounds(self, state: BodyState, shape: Ints) -> tuple[Array, Array]:
         """Low and high corner (batch, n, 2) of the axis-aligned boxes around some shapes in every world."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, ClassVar, Final, Self
+from typing import Any, Final, Self
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
@@ -152,8 +152,6 @@ def presets_of(env: str) -> Mapping[str, Config]:
 @dataclass(frozen=True)
 class InForce:
     """Values of the scheduled settings in force at one moment of a run."""
-
-    newest_only: ClassVar = True
 
     values: Mapping[str, float]  # by the name of the setting that acts
 

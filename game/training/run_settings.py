@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config, InForce
 from ai.training.experiments import named, sabotaged
+from ai.training.history import History
 from ai.training.session import Session
 from game.core import texts
 from game.core.catalogue import capital
@@ -170,6 +171,8 @@ class RunKind:
     page: tuple[str, ...]  # and of those on one page, on demand; all others are for `--set` of the command
     chapters: Mapping[str, str] = field(default_factory=dict)  # of Learn, by the names of the knobs they explain
     sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
+    # Values of the scheduled settings at the latest point of a run.
+    in_force: Callable[[Configuration, History], InForce] = lambda *_: InForce({})
     grace: float = 3.0  # seconds that a run has to end by itself when the window closes it
     patience: float = PATIENCE  # seconds for a turn of its worker
 
@@ -208,7 +211,7 @@ class RunSettings:
         config, seed: in effect, without waiting changes.
         draft, draft_seed: those that the knobs show.
         named: the preset, or sabotage of one, that the draft is or started from.
-        in_force: effective values, from the run's latest message.
+        in_force: effective values of the scheduled settings.
         problem: why the last value was refused.
         put_aside: the draft that a preset has replaced, until the next change.
 

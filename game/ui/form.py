@@ -59,11 +59,8 @@ class Form:
     Attributes:
         keys: the hints that can be pressed.
         used: whether a widget used the last event, or it moved the focus.
-        in_order: whether the end of a column leads on to the next one, and not back to its beginning.
 
     """
-
-    in_order = False
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
@@ -254,7 +251,7 @@ class Form:
             return
         direction = _ARROWS[command]
         if not (direction[0] and self.widgets[self._index].shift(direction[0])):
-            self._index = neighbour([w.box for w in self.widgets], self._index, direction, in_order=self.in_order)
+            self._index = neighbour([w.box for w in self.widgets], self._index, direction)
 
     def _repeat(self) -> None:
         """Go on moving while a direction is held: sideways the value, up and down the focus."""
@@ -354,11 +351,11 @@ def tab(event: pygame.event.Event) -> int:
     return -1 if getattr(event, "mod", 0) & pygame.KMOD_SHIFT else 1
 
 
-def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, *, in_order: bool = False) -> int:
+def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
     """Return the index of the nearest box in a direction; up and down wrap around.
 
-    With `in_order`, distances up and down are between edges, so that of two columns side by side the first one comes
-    first, and the lower end of a column leads to the next box in order, which is the first one of the next column.
+    Distances up and down are between edges, so that of two columns side by side the first one comes first. The lower
+    end of a column leads to the next box in order, which is the first one of the next column.
 
     A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
     leave a row only at its end.
@@ -366,9 +363,9 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
     here = boxes[current]
 
     def ahead(box: pygame.Rect) -> float:
-        if direction[1] and in_order:
+        if direction[1]:
             return box.top - here.bottom + 1 if direction[1] > 0 else here.top - box.bottom + 1
-        return direction[0] * (box.centerx - here.centerx) + direction[1] * (box.centery - here.centery)
+        return direction[0] * (box.centerx - here.centerx)
 
     def aside(box: pygame.Rect) -> float:
         if direction[0]:
@@ -389,8 +386,4 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
         forward = [index for index in row if index in apart] or row or apart
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
-    if direction[1] and in_order:
-        return (current + direction[1]) % len(boxes)
-    if direction[1] and others:
-        return min([current, *others], key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
-    return current
+    return (current + direction[1]) % len(boxes) if direction[1] else current

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
 
+from ai.pilots.folder import Measured, PilotFolder
 from ai.pilots.own import LOADING
-from ai.pilots.shelf import Measured, Shelf
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.drawing.tokens import HUMAN, SMALL
@@ -42,7 +42,7 @@ class OwnFiles:
     """
 
     def __init__(self, context: Context) -> None:
-        self._context, self._shelf = context, Shelf(context.user_dir)
+        self._context, self._own = context, PilotFolder(context.user_dir)
         self.said = ""
         self.measuring: Path | None = None
         self._worker: Worker | None = None
@@ -51,18 +51,18 @@ class OwnFiles:
     def read(self) -> list[OwnFile]:
         """Return what files there are."""
         try:
-            measured = {each.name: each for each in self._shelf.measured()}
-            return [OwnFile(path, measured.get(name)) for name, path in self._shelf.files().items()]
+            measured = {each.name: each for each in self._own.measured()}
+            return [OwnFile(path, measured.get(name)) for name, path in self._own.files().items()]
         except OSError as error:
-            self.said = texts.PILOTS_UNREADABLE.format(path=self._shelf.folder, reason=error.strerror or error)
+            self.said = texts.PILOTS_UNREADABLE.format(path=self._own.folder, reason=error.strerror or error)
             return []
 
     def new(self) -> Path | None:
         """Make a file and open it in the editor; None if it could not be written."""
         try:
-            path = self._shelf.new()
+            path = self._own.new()
         except OSError as error:
-            self.said = texts.PILOTS_NOT_WRITTEN.format(path=self._shelf.folder, reason=error.strerror or error)
+            self.said = texts.PILOTS_NOT_WRITTEN.format(path=self._own.folder, reason=error.strerror or error)
             return None
         self.edit(path)
         return path

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
 from game.core.scene import Transition
@@ -142,13 +141,8 @@ class DigitView(View):
     # Time
 
     def update(self) -> Transition | None:
-        run, history, knobs = self.run, self.run.history, self.scene.knobs
-        if self.matrix.confusion is not run.confusion:
-            self.matrix.set(run.confusion)
-        if run.alive and len(history):
-            rate, before = float(history["learning_rate"][-1]), knobs.settings.in_force
-            if before is None or before.values["learning_rate"] != rate:
-                knobs.show_in_force(InForce({"learning_rate": rate}))
+        if self.matrix.confusion is not self.run.confusion:
+            self.matrix.set(self.run.confusion)
         return None
 
     def clear(self) -> None:

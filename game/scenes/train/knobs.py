@@ -99,7 +99,7 @@ class KnobsPanel:
 
     def show_in_force(self, in_force: InForce | None) -> None:
         """Show the values in force at this moment of a run beside the settings; None for none."""
-        if in_force is not self.settings.in_force:
+        if in_force != self.settings.in_force:
             self.settings.in_force = in_force
             self.show()
 

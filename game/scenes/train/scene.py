@@ -291,8 +291,8 @@ class TrainScene(FormScene):
         if run.alive != self._alive:
             self._alive = run.alive
             self.knobs.set_running(run.alive)
-        if run.alive and run.in_force:
-            self.knobs.show_in_force(run.in_force)
+        if in_force := run.in_force:
+            self.knobs.show_in_force(in_force)
         self.start_button.label = self._start_label
 
     def _look(self) -> None:

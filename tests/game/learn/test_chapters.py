@@ -12,7 +12,7 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LanderEnv, Outcome
 from ai.nn import SGD, Adam
-from ai.pilots.shelf import Measured, Shelf
+from ai.pilots.folder import Measured, PilotFolder
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import save
@@ -472,10 +472,10 @@ def test_what_was_done_with_ones_own_is_ticked_and_nothing_before(context: Conte
     assert done() == {"train"}, "another network flew"
     records.keep(landed(), time.time(), network="mine")
     assert done() == {"train", "hand"}
-    shelf = Shelf(context.user_dir)
-    shelf.keep(Measured("fall", 0.5))
+    own_pilots = PilotFolder(context.user_dir)
+    own_pilots.keep(Measured("fall", 0.5))
     assert done() == {"train", "hand"}, "it lands too seldom"
-    shelf.keep(Measured("land", 0.95))
+    own_pilots.keep(Measured("land", 0.95))
     assert done() == {"train", "hand", "file"}
 
 
