@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
 
-_MORE: Final = "more"
+_MORE: Final = "taste"  # what a player can open
 _CHAPTER: Final = "pay"  # says more of what a network is paid for
 _LEAST: Final = 300.0  # points of a column
 _HIGH, _PAIR, _NOW = 0.5, 0.38, 0.26  # height of a picture, of its width; of the pair and the landers, of the view
