@@ -28,7 +28,8 @@ OPENED = {
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
     "game.scenes.learn.one_file": ({"MICROLANDER.read_text"}, "comes with the program"),
-    "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),
+    "game.scenes.train.laboratory": ({"self.open"}, "a part of the panel"),
+    "game.scenes.train.landers": ({"self.scene.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }

@@ -131,7 +131,7 @@ class Upbringing(Training):
         env, fresh = self.env, self.env.steps == 0
         self._starts[fresh] = np.column_stack([env.position, env.velocity, env.angle, env.angular_velocity])[fresh]
         self.agent.rests = self.resting
-        progress = super().advance()
+        progress: Progress = super().advance()
         wanted = self._scouts is not None or (self.question is None and self.agent.decisions >= BEFORE)
         for _ in range(_SCOUTING if wanted else 0):
             self._go_scouting()

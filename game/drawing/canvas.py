@@ -173,11 +173,18 @@ class Canvas:
             self.surface.set_clip(before)
 
     def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
-        """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
+        """Note what stands in a box, in points, and a function that says what it means now, for those who ask.
+
+        Of what is scrolled away nothing is explained.
+        """
         x, y, width, height = pygame.FRect(box)
-        (left, top), share = self.pixels((x, y)), self.scale / self.type
-        area = pygame.FRect(left / self.type, top / self.type, width * share, height * share)
-        self.explained.append(Explanation(area, what, now))
+        area = pygame.FRect(*self.pixels((x, y)), width * self.scale, height * self.scale)
+        seen = area.clip(pygame.FRect(self.surface.get_clip()))
+        if seen.height > area.height / 2:
+            corner = seen.left / self.type, seen.top / self.type
+            self.explained.append(
+                Explanation(pygame.FRect(corner, (seen.width / self.type, seen.height / self.type)), what, now)
+            )
 
     # Text
 

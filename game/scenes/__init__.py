@@ -16,7 +16,7 @@ ROUTES: Final = {
     "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "day": "play.starts.day",
     "watch": "watch.scene.WatchScene", "pilots": "watch.pilots.PilotsScene",
     "train": "train.scene.TrainScene", "taste": "taste.scene.TasteScene", "runs": "train.networks.NetworksScene",
-    "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",
+    "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.digit_training",
     "digit_inside": "digits.inside.DigitInsideScene",
     "physics": "physics.scene.PhysicsScene", "physics_step": "physics.step_scene.PhysicsStepScene",
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",

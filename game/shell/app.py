@@ -273,12 +273,6 @@ class App:
         if page := arrival(event, self.scenes.top, self.context):
             self.scenes.apply(page)
             return
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            canvas = self.canvas.reading
-            for row in self.scenes.top.hint_rows(canvas):
-                if (hint := row.at(canvas, event.pos)) and hint.run:
-                    self.scenes.apply(hint.run())
-                    return
         self.scenes.handle_event(event)
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:

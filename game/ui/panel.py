@@ -152,9 +152,9 @@ class Column:
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
     slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
-    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
+    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT, colour: Colour = MUTE) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        return self.flow([ButtonRow(label, press, size=size) for label, press in words])
+        return self.flow([ButtonRow(label, press, size=size, colour=colour) for label, press in words])
 
     def flow(self, widgets: Sequence[F]) -> list[F]:
         """Add widgets side by side, each as wide as its words, on as many lines as they need."""
@@ -198,7 +198,6 @@ class Panel(Column):
 
     def __init__(self, form: Form) -> None:
         super().__init__(form)
-        form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)
         self.height = self.scrolled = 0.0
         self._shown: Widget | None = None  # the widget that was in focus when it was last laid out

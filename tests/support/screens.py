@@ -40,7 +40,7 @@ from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
-from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.digits import digit_training
 from game.scenes.train.networks import NetworksScene
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.pilots import PilotsScene
@@ -68,7 +68,7 @@ SCREENS: dict[str, Make] = {
     "TrainScene": TrainScene,
     "TasteScene": raised,
     "DigitsScene": DigitsScene,
-    "DigitTrainingScene": DigitTrainingScene,
+    "DigitTrainingScene": digit_training,
     "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
     "PhysicsScene": PhysicsScene,
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),

@@ -6,7 +6,7 @@ from contextlib import suppress
 from functools import partial
 from typing import Final
 
-from ai.pilots.shelf import Shelf
+from ai.pilots.folder import PilotFolder
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
@@ -119,7 +119,7 @@ def done_with_own(context: Context) -> dict[str, bool]:
     own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
     pilots = []
     with suppress(OSError):
-        pilots = Shelf(context.user_dir).measured()
+        pilots = PilotFolder(context.user_dir).measured()
     return {
         "train": bool(runs),
         "land": any(run.success for run in (*runs, library.rescued()) if run),

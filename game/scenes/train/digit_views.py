@@ -54,6 +54,10 @@ class ConfusionMatrix(Widget):
             row, column = divmod(int(wrong.argmax()), _DIGITS)
             self.cell = (row, column)
 
+    def take_over(self, other: ConfusionMatrix) -> None:
+        """Show what another one shows."""
+        self.confusion, self.cell, self._chosen = other.confusion, other.cell, other._chosen
+
     def take(self, event: pygame.event.Event) -> bool:
         command = translate(event)
         if command not in _ARROWS:

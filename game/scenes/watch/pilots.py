@@ -11,8 +11,8 @@ from pathlib import Path
 from threading import Thread
 from typing import Final
 
+from ai.pilots.folder import Measured, PilotFolder
 from ai.pilots.own import LOADING
-from ai.pilots.shelf import Measured, Shelf
 from game.core import texts
 from game.core.scene import Pop, Transition, push
 from game.core.worker import Worker, WorkerState
@@ -38,7 +38,7 @@ class PilotsScene(PanelScene):
     def __init__(self, context: Context, choose: Callable[[Path], None], now: Path | None = None) -> None:
         super().__init__(context)
         self._choose = choose
-        self._shelf = Shelf(context.user_dir)
+        self._own = PilotFolder(context.user_dir)
         self._name, self._said = now.stem if now else "", ""
         self._worker: Worker | None = None
         self._share = 0.0  # how much is measured
@@ -49,10 +49,10 @@ class PilotsScene(PanelScene):
         self._files: dict[str, Path] = {}
         self._measured: dict[str, Measured] = {}
         try:
-            self._files = self._shelf.files()
-            self._measured = {each.name: each for each in self._shelf.measured()}
+            self._files = self._own.files()
+            self._measured = {each.name: each for each in self._own.measured()}
         except OSError as error:
-            self._said = texts.PILOTS_UNREADABLE.format(path=self._shelf.folder, reason=error.strerror or error)
+            self._said = texts.PILOTS_UNREADABLE.format(path=self._own.folder, reason=error.strerror or error)
         if self._name not in self._files:
             self._name = next(iter(self._files), "")
         self.build()
@@ -108,9 +108,9 @@ class PilotsScene(PanelScene):
 
     def _new(self) -> None:
         try:
-            path = self._shelf.new()
+            path = self._own.new()
         except OSError as error:
-            self._said = texts.PILOTS_NOT_WRITTEN.format(path=self._shelf.folder, reason=error.strerror or error)
+            self._said = texts.PILOTS_NOT_WRITTEN.format(path=self._own.folder, reason=error.strerror or error)
             self.build()
             return
         self._name = path.stem

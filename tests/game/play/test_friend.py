@@ -14,7 +14,7 @@ from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.challenge import Race
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.scene import TrainScene
 from game.ui.context import Context
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
@@ -50,7 +50,7 @@ def paste(driver: Driver, text: str, clipboard: list[str]) -> None:
     driver.frames(2)
 
 
-@pytest.mark.parametrize("scene", [MenuScene, PlayScene, DigitTrainingScene])
+@pytest.mark.parametrize("scene", [MenuScene, PlayScene, TrainScene])
 def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboard: list[str], scene):
     driver = open_game(scene)
     paste(driver, f"Beat this: “{codes.code(record)}”", clipboard)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pygame
 import pytest
 
-from ai.pilots import shelf
+from ai.pilots import folder as pilot_folder
 from ai.pilots.own import OwnPilot
 from game.core import texts
 from game.flight import own
@@ -99,7 +99,7 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
 
 
 def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Driver, context: Context):
-    shelf.Shelf(context.user_dir).new().write_text("def act(:")
+    pilot_folder.PilotFolder(context.user_dir).new().write_text("def act(:")
     open_pilots(watching)
     watching.press_on(texts.PILOTS_FLY)
     watch = scene(watching)
@@ -109,7 +109,7 @@ def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Dri
 
 
 def test_no_file_flies_before_it_was_chosen_in_this_game(open_game: Open, context: Context):
-    shelf.Shelf(context.user_dir).new()
+    pilot_folder.PilotFolder(context.user_dir).new()
     context.settings.model = "pilot.py"
     driver = open_game(WatchScene, seed=2)
     assert "pilot.py" not in scene(driver).flyer.policies.names
@@ -123,7 +123,7 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
     def refuse(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left")
 
-    monkeypatch.setattr(*((pilots, "edit") if fails == "editor" else (shelf, "write_text")), refuse)
+    monkeypatch.setattr(*((pilots, "edit") if fails == "editor" else (pilot_folder, "write_text")), refuse)
     open_pilots(watching)
     watching.press_on(texts.PILOTS_NEW)
     folder = context.user_dir / "pilots"
@@ -140,13 +140,13 @@ def test_it_is_measured_and_that_is_said_in_one_line_until_the_file_is_saved_aga
 ):
     monkeypatch.setattr(own, "STARTS", 10)
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
-    path = shelf.Shelf(context.user_dir).new()
+    path = pilot_folder.PilotFolder(context.user_dir).new()
     open_pilots(watching)
     written.clear()
     watching.press_on(texts.PILOTS_MEASURE)
     watching.wait(lambda: watching.top._worker is None)
     assert texts.PILOTS_MEASURING[1].format(count=10) in written
-    (measured,) = shelf.Shelf(context.user_dir).measured()
+    (measured,) = pilot_folder.PilotFolder(context.user_dir).measured()
     assert (measured.name, measured.landed <= 0.8) == ("pilot", True)
     os.utime(path, (measured.when - 9, measured.when - 9))
     written.clear()
@@ -167,17 +167,17 @@ def test_it_is_measured_and_that_is_said_in_one_line_until_the_file_is_saved_aga
 
 def test_a_measurement_says_how_far_it_is_and_keeps_what_came(context: Context, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(own, "STARTS", 4)
-    path = shelf.Shelf(context.user_dir).new()
+    path = pilot_folder.PilotFolder(context.user_dir).new()
     path.write_text("def act_many(o): return [3] * len(o)")
     shares = [each for turn in own.measure(context.user_dir, path) for each in turn]
     assert shares[-1] == 1.0
     assert shares == sorted(shares)
     assert 0 < shares[0] < 0.1
-    assert [each.landed for each in shelf.Shelf(context.user_dir).measured()] == [0]
+    assert [each.landed for each in pilot_folder.PilotFolder(context.user_dir).measured()] == [0]
 
 
 def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, context: Context):
-    shelf.Shelf(context.user_dir).new().write_text("def act(o):\n    while True: pass")
+    pilot_folder.PilotFolder(context.user_dir).new().write_text("def act(o):\n    while True: pass")
     open_pilots(watching)
     watching.frames(1)
     place = watching.widget(texts.PILOTS_MEASURE).box.topleft
@@ -191,18 +191,18 @@ def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, c
 
 def test_what_is_wrong_with_a_measured_file_is_reported(watching: Driver, context: Context, monkeypatch):
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
-    shelf.Shelf(context.user_dir).new().write_text("def act(o): return 9")
+    pilot_folder.PilotFolder(context.user_dir).new().write_text("def act(o): return 9")
     open_pilots(watching)
     watching.press_on(texts.PILOTS_MEASURE)
     watching.wait(lambda: watching.top._worker is None)
     assert "whole number from 0 to 5" in watching.top._said
-    assert shelf.Shelf(context.user_dir).measured() == []
+    assert pilot_folder.PilotFolder(context.user_dir).measured() == []
 
 
 def test_play_hands_over_to_it_and_it_is_no_record(
     open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = shelf.Shelf(context.user_dir).new()
+    path = pilot_folder.PilotFolder(context.user_dir).new()
     driver = open_game(PlayScene, 3)
     driver.keys(pygame.K_ESCAPE)
     driver.press_on(texts.PILOTS_OPEN)
@@ -232,7 +232,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
 
 
 def test_it_is_raced_as_a_ghost(open_game: Open, context: Context):
-    shelf.Shelf(context.user_dir).new()
+    pilot_folder.PilotFolder(context.user_dir).new()
     driver = open_game(WatchScene, seed=2)
     open_pilots(driver)
     driver.press_on(texts.PILOTS_RACE)
