@@ -146,8 +146,7 @@ class Credit:
     @property
     def barred(self) -> str:
         """The reason in a sentence, where there is one."""
-        whole = self.bar == "handed_over" and self._flight.share == 0
-        return (texts.NETWORK_FLEW_ALL if whole else texts.NOT_COUNTED[self.bar]).format(who=self.who)
+        return texts.NOT_COUNTED[self.bar].format(who=self.who)
 
     @property
     def counts(self) -> bool:
