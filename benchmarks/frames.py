@@ -41,6 +41,7 @@ from typing import Any
 
 import numpy as np
 import pygame
+from game.scenes.play.choices import ChoicesScene
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
@@ -63,11 +64,11 @@ from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
+from game.scenes.train.landers import LanderView
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
@@ -200,8 +201,9 @@ def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassif
 def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
-    scene.laboratory.chosen = Chosen("rate_times_100")
-    scene._split("rate_times_100")
+    assert isinstance(scene.view, LanderView)
+    scene.view.laboratory.chosen = Chosen("rate_times_100")
+    scene.view._split_now("rate_times_100")
     return scene
 
 

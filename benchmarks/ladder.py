@@ -16,7 +16,6 @@ import numpy as np
 
 from ai.lander.environment import LIMITS, NUM_ACTIONS, LanderEnv
 from ai.lander.pilots import ScriptedPilot
-from ai.lander.rules import AREAS
 from ai.lander.spawns import LADDER
 from tests.support.slow_hands import fly_slowly
 
@@ -26,7 +25,7 @@ PILOTS = {"a fifth of a second late": (12, 0.0), "two fifths late, a tenth mista
 
 def share(spawn: str, count: int, seed: int, late: int, mistaken: float) -> float:
     """Share of `count` flights from that kind of start that land, flown `late` steps behind."""
-    env = LanderEnv(count, seed, spawn, frame_skip=1, limits=LIMITS.in_area(len(AREAS) - 1))
+    env = LanderEnv(count, seed, spawn, frame_skip=1, limits=LIMITS.roomy())
     env.reset()
     rng = np.random.default_rng(seed)
 

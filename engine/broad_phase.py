@@ -18,58 +18,52 @@ from engine.vector import Array, Bools, Ints, length
 
 
 class BroadPhase:
-    """Table of all `pairs` of shapes that may ever meet, (pairs, 2), and the search for those that are near now.
+    """Search for pairs of shapes that are near now, among all that may ever meet."""
 
-    Of a polygon and a circle, the polygon comes first.
-    """
-
-    def __init__(
-        self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float, before: BroadPhase | None = None
-    ) -> None:
-        """Make the table; what `before` has of the first bodies is kept, and pairs of new ones come after it."""
+    def __init__(self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float) -> None:
         self._shapes = shapes
         self._moving, self._fixed = span(params.dynamic), ~params.dynamic
+        self._may_meet = _may_meet(params)
         self._shape_reach = shapes.reach + margin
         self._reach = np.zeros(len(params.group))  # of bodies, from the centre of mass
         np.maximum.at(self._reach, shapes.body, length(shapes.centre) + self._shape_reach)
         self._boxes = np.zeros((4, len(params.group), batch))
         self._shape_boxes = np.zeros((4, len(shapes), batch))  # only those of fixed bodies are filled
+        self._overlap: Bools = np.zeros((0, 0, 0), dtype=bool)  # of bodies in the last step
+        self._met: tuple[Ints, Ints]  # and the worlds and pairs of their shapes
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
-        self._body_pairs = _meeting_bodies(params, len(before._reach) if before else 0)
-        self.pairs, self._rows = _meeting_shapes(self._body_pairs, shapes)
-        if before:
-            rows = np.where(self._rows < 0, -1, self._rows + len(before.pairs))
-            self._body_pairs = np.concatenate([before._body_pairs, self._body_pairs], axis=1)
-            self.pairs = np.concatenate([before.pairs, self.pairs])
-            wide = max(rows.shape[1], before._rows.shape[1])
-            self._rows = np.concatenate([_padded(before._rows, wide), _padded(rows, wide)])
+
+    def all_pairs(self) -> Ints:
+        """Return all pairs of shapes that may ever meet, (pairs, 2); of a polygon and a circle, it first."""
+        mover, other = self._may_meet.nonzero()
+        return self._shapes.pairs_of(np.arange(len(self._fixed))[self._moving][mover], other)[0]
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Discard the kept boxes of fixed bodies, which were put elsewhere."""
         self._stale[bodies] = self._fixed[bodies]
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
-        """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
+        """Return the worlds (n,) and pairs of shapes (n, 2) whose boxes overlap; sorted by world, then by shapes.
 
         Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
         boxes = self._body_boxes(state)
-        a, b = self._body_pairs
-        overlap = _overlap(boxes, a, b)  # (pairs of bodies, batch)
+        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None], self._may_meet[..., None])
         if not state.active.all():
-            overlap &= (state.active[:, a] & state.active[:, b]).T
+            overlap &= (state.active[:, self._moving, None] & state.active[:, None]).transpose(1, 2, 0)
         if awake is not None:
-            overlap &= (awake[:, a] | awake[:, b]).T
-        met, world = overlap.nonzero()
-        if not len(world):
-            return world, world
-        order = np.argsort(world, kind="stable")
-        met, world = met[order], world[order]
-        rows = self._rows[met]
-        meet = rows >= 0
-        world, pair = world[meet.nonzero()[0]], rows[meet]
+            overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
+        if not np.array_equal(overlap, self._overlap):  # most often the same bodies are near as a step before
+            self._overlap, self._met = overlap, self._shapes_of(overlap)
+        world, pair = self._met
         near = self._shapes_near(state, world, pair)
         return world[near], pair[near]
+
+    def _shapes_of(self, overlap: Bools) -> tuple[Ints, Ints]:
+        """Return the worlds (n,) and pairs of shapes (n, 2) of bodies that overlap, (movers, bodies, batch)."""
+        world, mover, other = overlap.transpose(2, 0, 1).nonzero()
+        pair, row = self._shapes.pairs_of(np.arange(len(self._fixed))[self._moving][mover], other)
+        return world[row], pair
 
     def _body_boxes(self, state: BodyState) -> Array:
         """Boxes (4, bodies, batch) of all bodies as they are now."""
@@ -92,57 +86,32 @@ class BroadPhase:
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
         """Whether the boxes of pairs of shapes overlap, (n,)."""
-        shape, world = self.pairs[pair].T.ravel(), np.concatenate([world, world])  # the first of all, then the second
+        if not len(pair):
+            return np.zeros(0, dtype=bool)
+        shape, world = pair.T.ravel(), np.concatenate([world, world])  # the first of all, then the second
         boxes = self._shape_boxes[:, shape, world]
         loose = np.flatnonzero(~self._shapes.fixed[shape])
         centre = self._shapes.centres(state, world[loose], shape[loose]).T
         reach = self._shape_reach[shape[loose]]
         boxes[:2, loose], boxes[2:, loose] = centre - reach, centre + reach
-        return _overlap(boxes, slice(len(pair)), slice(len(pair), None))
+        return _overlap(boxes[:, : len(pair)], boxes[:, len(pair) :])
 
 
-def _overlap(boxes: Array, a: Span, b: Span) -> Bools:
-    """Whether the boxes `a` overlap as many boxes `b`."""
-    overlap: Bools = boxes[1, a] <= boxes[3, b]
-    for low, one, high, other in ((1, b, 3, a), (0, a, 2, b), (0, b, 2, a)):
+def _overlap(a: Array, b: Array, among: Bools | np.bool_ = np.True_) -> Bools:
+    """Whether the boxes `a` (4, ...) overlap the boxes `b`, `among` those that may; it is done where none is left."""
+    overlap: Bools = (a[1] <= b[3]) & among
+    for low, high in ((b[1], a[3]), (a[0], b[2]), (b[0], a[2])):
         if overlap.any():
-            overlap &= boxes[low, one] <= boxes[high, other]
+            overlap &= low <= high
     return overlap
 
 
-def _meeting_bodies(params: BodyParams, first: int) -> Ints:
-    """Return the pairs of bodies that may meet, (2, pairs): one that can move, and one that their groups let it touch.
+def _may_meet(params: BodyParams) -> Bools:
+    """Whether bodies that can move may touch others, (movers, bodies): of two that can move, the first may the second.
 
-    Of two that can move, each pair is there once. At least one body of a pair is the `first` or a later one.
+    Bodies of one group, but for group 0, pass through each other.
     """
     bodies, moving = np.arange(len(params.group)), np.flatnonzero(params.dynamic)
-    pairs = []
-    for movers, others in ((moving[moving < first], bodies[first:]), (moving[moving >= first], bodies)):
-        meet = (others > movers[:, None]) | ~params.dynamic[others]
-        meet &= (params.group[others] == 0) | (params.group[others] != params.group[movers, None])
-        mover, other = meet.nonzero()
-        pairs.append(np.stack([movers[mover], others[other]]))
-    return np.concatenate(pairs, axis=1)
-
-
-def _meeting_shapes(body_pairs: Ints, shapes: ShapeTable) -> tuple[Ints, Ints]:
-    """Return all pairs of shapes that may meet, (pairs, 2), and which of them each pair of bodies has, (n, most).
-
-    Where two bodies have fewer pairs of shapes than the most, -1 stands in place of rows.
-    """
-    parts = np.bincount(shapes.body)  # of each body; they stand side by side in the table
-    begin, (one, other) = parts.cumsum() - parts, body_pairs
-    count = parts[one] * parts[other]
-    rows = np.arange(count.max(initial=0))
-    padded = np.where(rows < count[:, None], (count.cumsum() - count)[:, None] + rows, -1)
-    met, number = (rows < count[:, None]).nonzero()
-    number, across = np.divmod(number, parts[other][met])
-    pairs = np.stack([begin[one][met] + number, begin[other][met] + across], axis=1)
-    turned = shapes.is_circle[pairs[:, 0]] & ~shapes.is_circle[pairs[:, 1]]
-    pairs[turned] = pairs[turned, ::-1]
-    return pairs, padded
-
-
-def _padded(rows: Ints, wide: int) -> Ints:
-    """Return a table of rows widened with -1."""
-    return np.pad(rows, ((0, 0), (0, wide - rows.shape[1])), constant_values=-1)
+    apart = (params.group == 0) | (params.group != params.group[moving, None])
+    meet: Bools = apart & ((bodies > moving[:, None]) | ~params.dynamic)
+    return meet

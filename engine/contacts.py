@@ -26,7 +26,7 @@ class Contacts(Manifold):
     """The touching pairs of one step, m of them, with all that is known of each; every array leads with them."""
 
     world: Ints  # (m,)
-    pair: Ints  # (m,) row of the world's table of shape pairs
+    shape: Ints  # (m, 2) of A and of B
     body: Ints  # (m, 2) A and B
     friction: Array  # (m,)
     restitution: Array  # (m,)
@@ -49,29 +49,29 @@ class Contacts(Manifold):
 
 
 class NarrowPhase:
-    """Exact test of pairs of shapes that are near, rows of `pairs`."""
+    """Exact test of pairs of shapes that are near."""
 
-    def __init__(self, params: BodyParams, shapes: ShapeTable, pairs: Ints) -> None:
+    def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
         self._params, self._shapes = params, shapes
-        self.pairs = pairs  # (pairs, 2) of shapes
+        self._places = np.array([len(shapes), 1])  # of two shapes in a number that names them
         self._coloured: tuple[Ints, Ints, Ints] | None = None  # keys of the last step's contacts, their order, colours
 
     def touching(self, state: BodyState, world: Ints, pair: Ints) -> Contacts | None:
-        """Return those of the pairs (n,) that touch, in the solver's order; None if none does."""
+        """Return those of the pairs of shapes (n, 2) that touch, in the solver's order; None if none does."""
         if not len(world):
             return None
-        manifold = collide_pairs(self._shapes, state, world, self.pairs[pair], MARGIN)
+        manifold = collide_pairs(self._shapes, state, world, pair, MARGIN)
         rows = np.flatnonzero(manifold.valid.any(axis=1))
         if not len(rows):
             return None
         order, colours = self._colour(world[rows], pair[rows], state.pose.shape[1])
         rows = rows[order]
         world, pair = world[rows], pair[rows]
-        body = self._shapes.body[self.pairs[pair]]
+        body = self._shapes.body[pair]
         return Contacts(
             **{name: table[rows] for name, table in vars(manifold).items()},
             world=world,
-            pair=pair,
+            shape=pair,
             body=body,
             friction=_mix(self._params.friction[body], _geometric_mean, _DEFAULT_FRICTION),
             restitution=_mix(self._params.restitution[body], np.maximum, 0.0),
@@ -81,14 +81,15 @@ class NarrowPhase:
         )
 
     def _key(self, world: Ints, pair: Ints) -> Ints:
-        """A number for each pair of each world, (n,)."""
-        return world * len(self.pairs) + pair
+        """A number for each pair of shapes of each world, (n,)."""
+        key: Ints = world * len(self._shapes) ** 2 + pair @ self._places
+        return key
 
     def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, Ints]:
         """Return order and colours of contacts; those of the last step if the same pairs touch."""
         key = self._key(world, pair)
         if self._coloured is None or not np.array_equal(key, self._coloured[0]):
-            body = self._shapes.body[self.pairs[pair]]
+            body = self._shapes.body[pair]
             colours = _colours(world[:, None] * bodies + body, self._params.dynamic[body])
             order = np.argsort(colours, kind="stable")
             self._coloured = (key, order, colours[order])
@@ -101,7 +102,7 @@ class NarrowPhase:
         """
         if not last:
             return
-        keys = self._key(contacts.world, contacts.pair), self._key(last.world, last.pair)
+        keys = self._key(contacts.world, contacts.shape), self._key(last.world, last.shape)
         _, now, then = np.intersect1d(*keys, assume_unique=True, return_indices=True)  # pairs that touched before, too
         same = contacts.valid[now] & last.valid[then] & (contacts.feature[now] == last.feature[then])
         # There is one friction for both points: it stays if all of the points have.

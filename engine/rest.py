@@ -13,7 +13,7 @@ velocity, a force, a body taken out, a floor moved away and another gravity wake
 
 from __future__ import annotations
 
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,9 +39,8 @@ class Rest:
 
     """
 
-    def __init__(self, params: BodyParams, state: BodyState, gravity: Array, allowed: bool) -> None:
+    def __init__(self, state: BodyState, gravity: Array, allowed: bool) -> None:
         self._allowed = allowed
-        self._know(params)
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
         self.awake: Bools | None = None
         self._place: Array = state.pose.copy()  # where each body was when it came to be still
@@ -49,22 +48,16 @@ class Rest:
         self._still: Ints = np.zeros(state.active.shape, dtype=np.intp)  # for how many steps it has been
         self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
 
-    def _know(self, params: BodyParams) -> None:
+    def know(self, params: BodyParams) -> None:
+        """Go by these parameters from now on. Bodies that were added are restless; all others go on as they were."""
         self._dynamic = params.dynamic
         self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
-
-    def add(self, params: BodyParams, state: BodyState) -> None:
-        """Take in bodies that were added, awake; all others go on as they were."""
-        self._know(params)
-        new = slice(self.asleep.shape[1], None)
-        unslept = np.zeros_like(state.active[:, new])
-
-        pose, velocity, active = state.pose[:, new], state.velocity[:, new], state.active[:, new]
-        self.asleep, self._still = _grown(self.asleep, unslept), _grown(self._still, unslept)
-        self.awake = None if self.awake is None else _grown(self.awake, ~unslept)
-        self._place, self._pace = _grown(self._place, pose), _grown(self._pace, velocity)
-        seen = self._seen
-        self._seen = _grown(seen[0], pose), _grown(seen[1], velocity), _grown(seen[2], active), seen[3]
+        more = len(params.group) - self.asleep.shape[1]
+        self.asleep, self._still = _wider(self.asleep, more), _wider(self._still, more)
+        self._place, self._pace = _wider(self._place, more), _wider(self._pace, more)
+        pose, velocity, active, gravity = self._seen
+        self._seen = _wider(pose, more), _wider(velocity, more), _wider(active, more), gravity
+        self._note_awake()
 
     def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
@@ -91,6 +84,17 @@ class Rest:
         if touched.any():
             self.wake(touched, contacts)
         return bool(touched.any())
+
+    def contacts_of_sleepers(self, contacts: Contacts | None) -> Contacts | None:
+        """Return those of the last step's contacts that this step has not looked for: of bodies that sleep."""
+        if contacts is None or self.awake is None:
+            return None
+        asleep = ~self.awake[contacts.world[:, None], contacts.body].any(axis=1)
+        if not asleep.any():
+            return None
+        slept = contacts.take(np.flatnonzero(asleep))
+        slept.approach = np.zeros_like(slept.approach)
+        return slept
 
     def wake(self, chosen: Bools, contacts: Contacts | None) -> None:
         """Wake the chosen bodies (batch, bodies) and their islands; a fixed body wakes what lies on it."""
@@ -119,12 +123,16 @@ class Rest:
             supported = _linked(~restless & ~self._dynamic, contacts, self._dynamic)
             disturbed = _linked(restless, contacts, self._dynamic)
             self.asleep = supported & ~disturbed & self._dynamic
+        self._note_awake()
+
+    def _note_awake(self) -> None:
+        restless = self._still < STEPS
         self.awake = ~self.asleep & (self._dynamic | restless) if self.asleep.any() else None
 
 
-def _grown(table: NDArray[T], rows: NDArray[Any]) -> NDArray[T]:
-    """Return a table (batch, bodies, ...) with more bodies."""
-    return np.concatenate([table, rows], axis=1, dtype=table.dtype)
+def _wider(table: NDArray[T], more: int) -> NDArray[T]:
+    """Return a table (batch, bodies, ...) with zeros for more bodies: unlike anything that is still."""
+    return np.pad(table, [(0, more if axis == 1 else 0) for axis in range(table.ndim)])
 
 
 def _linked(start: Bools, contacts: Contacts, dynamic: Bools) -> Bools:

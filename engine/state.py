@@ -5,7 +5,6 @@ Position and angle share an array, and so do velocity and spin: all three number
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -57,12 +56,14 @@ class BodyState:
         self.cos[:, bodies], self.sin[:, bodies] = np.cos(angle), np.sin(angle)
 
 
+@dataclass(frozen=True)
 class BodyParams:
     """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch.
 
-    A table may be replaced at any time by another of its shape. The next step goes by it, and bodies whose rows differ
-    begin it awake and without the last one's impulses. Tables can't be written into, except a `quadratic_drag` of shape
-    (batch, bodies, 3), which gives each world an air of its own. Raises ValueError for values without physical sense.
+    To change a table, assign another `BodyParams` to `World.params`, made by `dataclasses.replace`. The next step goes
+    by it, and bodies whose rows differ begin it awake and without the last one's impulses. Tables can't be written
+    into, except a `quadratic_drag` of shape (batch, bodies, 3), which gives each world an air of its own. Raises
+    ValueError for values without physical sense.
     """
 
     inverse_mass: Array  # (bodies, 3): 1/kg, 1/kg, 1/(kg·m²); 0 for a body that no force moves
@@ -72,50 +73,43 @@ class BodyParams:
     friction: Array  # (bodies,): Coulomb's coefficient; NaN leaves it to the other body
     group: Ints  # (bodies,): bodies of the same group do not meet, but for group 0
 
-    def __init__(self, **tables: object) -> None:
-        for name, table in tables.items():
-            setattr(self, name, table)
-
-    def __setattr__(self, name: str, value: object) -> None:
-        """Replace a table by a copy of `value`, unless it is equal."""
-        table = np.array(value, dtype=np.intp if name == "group" else float)
-        before = vars(self).get(name, table)
-        most_axes = 3 if name == "quadratic_drag" else before.ndim
-        if table.shape[-2:] != before.shape[-2:] or table.ndim > most_axes:
-            raise ValueError(f"{name} must be of shape {before.shape[-2:]}, not {table.shape}")
-        given = table[~np.isnan(table)] if name in ("restitution", "friction") else table
-        most = 1.0 if name == "restitution" else _LARGEST
-        if name != "group" and not ((given >= 0) & (given <= most)).all():
-            raise ValueError(f"{name} must be from 0 to {most}, not {table.tolist()}")
-        if name in vars(self) and np.array_equal(table, before, equal_nan=name != "group"):
-            return
-        table.flags.writeable = table.ndim == 3
-        vars(self)[name] = table
+    def __post_init__(self) -> None:
+        count = len(self.group)
+        for name, value in vars(self).items():
+            table = np.array(value, dtype=np.intp if name == "group" else float)
+            shape = (count, 3) if name in ("inverse_mass", "linear_drag", "quadratic_drag") else (count,)
+            if table.shape != shape and (name != "quadratic_drag" or table.shape[1:] != shape):
+                raise ValueError(f"{name} must be of shape {shape}, not {table.shape}")
+            given = table[~np.isnan(table)] if name in ("restitution", "friction") else table
+            most = 1.0 if name == "restitution" else _LARGEST
+            if name != "group" and not ((given >= 0) & (given <= most)).all():
+                raise ValueError(f"{name} must be from 0 to {most}, not {table.tolist()}")
+            table.flags.writeable = table.ndim == 3
+            object.__setattr__(self, name, table)  # a copy of its own
 
     @classmethod
     def empty(cls) -> BodyParams:
         """Return tables without bodies."""
         rows, row = np.zeros((0, 3)), np.zeros(0)
-        return cls(inverse_mass=rows, linear_drag=rows, quadratic_drag=rows, restitution=row, friction=row, group=row)
+        return cls(rows, rows, rows, row, row, np.zeros(0, dtype=np.intp))
 
     @property
     def dynamic(self) -> Bools:
         """Whether forces can move each body, (bodies,)."""
         return self.inverse_mass[:, 0] > 0
 
-    def append(self, row: BodyParams) -> None:
-        """Add the rows of `row` to every table."""
-        grown = BodyParams(**{name: np.concatenate([table, getattr(row, name)]) for name, table in vars(self).items()})
-        vars(self).update(vars(grown))
+    def with_body(self, row: BodyParams) -> BodyParams:
+        """Return these tables with the row of another body."""
+        return BodyParams(**{name: np.concatenate([table, vars(row)[name]]) for name, table in vars(self).items()})
 
-    def changed(self, before: Mapping[str, Array | Ints]) -> Bools:
-        """Return which of the bodies of the tables `before`, by name, have other rows now, (bodies,)."""
-        changed = np.zeros(len(before["group"]), dtype=bool)
-        for name, then in before.items():
-            now = getattr(self, name)
-            if now is not then:
-                now = now[: len(changed)] if now.ndim == 1 else now[..., : len(changed), :]
-                differs = (now != then) & ~(np.isnan(now) & np.isnan(then))
-                rows = differs if now.ndim == 1 else differs.any(axis=-1)
-                changed |= rows.any(axis=0) if now.ndim == 3 else rows
+    def changed(self, before: BodyParams) -> Bools:
+        """Return which bodies have other rows than `before`, or had none, (bodies,)."""
+        count = len(before.group)
+        changed = np.arange(len(self.group)) >= count
+        for name, then in vars(before).items():
+            now = vars(self)[name]
+            now = now[:count] if now.ndim == 1 else now[..., :count, :]
+            differs = (now != then) & ~(np.isnan(now) & np.isnan(then))
+            rows = differs if now.ndim == 1 else differs.any(axis=-1)
+            changed[:count] |= rows if rows.ndim == 1 else rows.any(axis=0)
         return changed

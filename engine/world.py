@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from operator import is_
 from typing import Any
 
 import numpy as np
@@ -47,21 +46,22 @@ class World:
         if batch < 1:
             raise ValueError(f"a world needs a batch of at least 1, not {batch}")
         self.batch = batch
-        self._impulses: Contacts | None = None  # those of the last step's contacts whose impulses begin the next one
-        self.gravity = gravity
-        self.iterations = iterations
         self.sleeping = sleeping
-        self.state = BodyState.at_rest(np.zeros((batch, 0, 3)))
-        self.params = BodyParams.empty()
         self.bodies: list[Body] = []
         self.shapes: list[Shape] = []
-        self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
-        self._known: dict[str, Array | Ints] = {}  # tables of `params`, for which the rest is made
+        self.state = BodyState.at_rest(np.zeros((batch, 0, 3)))
+        self._params = BodyParams.empty()
+        self.contacts: Contacts | None = None
+        self._remembered: Contacts | None = None  # those of `contacts` whose impulses begin the next step
+        self.gravity = gravity
+        self.iterations = iterations
+        self._rest = Rest(self.state, self.gravity, sleeping)
+        self._prepared: BodyParams | None = None  # for which all below is made
         self._shape_table: ShapeTable
         self._broad_phase: BroadPhase
-        self._rest: Rest
-        self._movers: Span | None = None
+        self._narrow_phase: NarrowPhase
+        self._movers: Span | None
 
     @property
     def gravity(self) -> Array:
@@ -74,12 +74,12 @@ class World:
         if gravity.shape not in ((2,), (self.batch, 2)):
             raise ValueError(f"gravity must be of shape (2,) or ({self.batch}, 2), not {gravity.shape}")
         gravity.flags.writeable = False
-        if self._impulses:
+        if self._remembered:
             # Impulses that bore a stack under a stronger gravity would throw it up: they shrink to g·g' / g·g.
             before, strength = self._gravity, dot(self._gravity, self._gravity)
             share = np.where(strength > 0, dot(before, gravity) / np.maximum(strength, 1e-30), 1.0).clip(0.0, 1.0)
-            impulse = self._impulses.impulse * np.broadcast_to(share, self.batch)[self._impulses.world, None]
-            self._impulses = replace(self._impulses, impulse=impulse)
+            impulse = self._remembered.impulse * np.broadcast_to(share, self.batch)[self._remembered.world, None]
+            self._remembered = replace(self._remembered, impulse=impulse)
         self._gravity: Array = gravity
 
     @property
@@ -92,6 +92,17 @@ class World:
         if not isinstance(value, int | np.integer) or value < 1:
             raise ValueError(f"the solver needs a whole number of iterations, at least 1, not {value}")
         self._iterations = int(value)
+
+    @property
+    def params(self) -> BodyParams:
+        """Mass, drag and surface of the bodies; assign others to change them."""
+        return self._params
+
+    @params.setter
+    def params(self, params: BodyParams) -> None:
+        if len(params.group) != len(self.bodies) or params.quadratic_drag.shape[:-2] not in ((), (self.batch,)):
+            raise ValueError(f"parameters must be those of {len(self.bodies)} bodies in {self.batch} worlds")
+        self._params = params
 
     def add(
         self,
@@ -137,14 +148,14 @@ class World:
         pose = np.empty((self.batch, 3))
         pose[:, :2], pose[:, 2] = finite("position", position), finite("angle", angle)
         row = BodyParams(
-            inverse_mass=[inverse_mass],
-            linear_drag=[(linear_drag, linear_drag, angular_drag)],
-            quadratic_drag=[(quadratic_drag, quadratic_drag, angular_quadratic_drag)],
-            restitution=[np.nan if restitution is None else finite("restitution", restitution)],
-            friction=[np.nan if friction is None else finite("friction", friction)],
-            group=[group],
+            inverse_mass=np.array([inverse_mass]),
+            linear_drag=np.array([(linear_drag, linear_drag, angular_drag)]),
+            quadratic_drag=np.array([(quadratic_drag, quadratic_drag, angular_quadratic_drag)]),
+            restitution=finite("restitution", [restitution]) if restitution is not None else np.array([np.nan]),
+            friction=finite("friction", [friction]) if friction is not None else np.array([np.nan]),
+            group=np.array([group]),
         )
-        self.params.append(row)
+        self._params = self._params.with_body(row)
         self.state.append(pose)
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
@@ -159,15 +170,8 @@ class World:
         self._prepare()
         state, params, movers, gravity, rest = self.state, self.params, self.movers, self.gravity, self._rest
         rest.wake_disturbed(state, gravity, self.contacts)
-        contacts, solver = None, None
-        while touching:
-            world, pair = self._broad_phase.near(state, rest.awake)
-            contacts = self._narrow_phase.touching(state, world, pair)
-            if not rest.wake_touched(contacts, self.contacts):
-                break  # else again: what has woken may touch others, which `near` left out as asleep
-        if contacts:
-            self._narrow_phase.warm_start(contacts, self._impulses, pass_on=self.sleeping)
-            solver = Solver(state, params, contacts)
+        contacts = self._find_contacts() if touching else None
+        solver = Solver(state, params, contacts) if contacts else None
         integrate_velocity(state, params, movers, gravity, DT, rest.awake)
         if solver:
             solver.solve_velocities(state, self.iterations, DT)
@@ -176,52 +180,43 @@ class World:
             solver.correct_positions(state, max(2, self.iterations // 3), DT)
         state.refresh_rotation(movers)
         state.force[:, movers] = 0.0
-        self._keep(contacts)
+        self._remember(contacts)
         rest.fall_asleep(state, gravity, self.contacts)
 
-    def _keep(self, contacts: Contacts | None) -> None:
-        """Remember a step's contacts, and those of bodies that slept in it."""
-        slept, awake = None, self._rest.awake
-        if self.contacts and awake is not None:
-            kept = ~awake[self.contacts.world[:, None], self.contacts.body].any(axis=1)
-            slept = self.contacts if kept.all() else self.contacts.take(np.flatnonzero(kept))
-            slept.approach = np.zeros_like(slept.approach)
-        self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
+    def _find_contacts(self) -> Contacts | None:
+        """Return what touches, with the impulses that it begins with; None if nothing does."""
+        contacts = self._narrow_phase.touching(self.state, *self._broad_phase.near(self.state, self._rest.awake))
+        while self._rest.wake_touched(contacts, self.contacts):  # what has woken may touch others that were left out
+            contacts = self._narrow_phase.touching(self.state, *self._broad_phase.near(self.state, self._rest.awake))
+        if contacts:
+            self._narrow_phase.warm_start(contacts, self._remembered, pass_on=self.sleeping)
+        return contacts
 
-    def _prepare(self) -> None:
-        """Bring up to date what depends on bodies and their parameters, if any has been added or replaced.
-
-        What is remembered of other bodies stays, unless others may meet now than before.
-        """
-        if self._up_to_date():
-            return
-        params, before, self._known = self.params, self._known, dict(vars(self.params))
-        count, self._movers = len(before.get("group", ())), None
-        kept = before and np.array_equal(params.group[:count], before["group"])
-        if kept and np.array_equal(params.dynamic[:count], before["inverse_mass"][:, 0] > 0):
-            if len(self.bodies) > count:
-                self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic, self._shape_table)
-                self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN, self._broad_phase)
-                self._rest.add(params, self.state)
-            if (changed := params.changed(before)).any():
-                changed = np.append(changed, np.zeros(len(self.bodies) - count, dtype=bool))
-                self._forget(np.broadcast_to(changed, (self.batch, len(changed))))
-                self._rest.wake(np.broadcast_to(changed, (self.batch, len(changed))), self.contacts)
-        else:
-            self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic)
-            self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN)
-            self._rest = Rest(params, self.state, self.gravity, self.sleeping)
-            self.contacts = self._impulses = None
-        self._narrow_phase = NarrowPhase(params, self._shape_table, self._broad_phase.pairs)
-
-    def _up_to_date(self) -> bool:
-        return bool(self._known) and all(map(is_, self._known.values(), vars(self.params).values()))
+    def _remember(self, contacts: Contacts | None) -> None:
+        """Keep a step's contacts, and after them those of bodies that slept in it."""
+        slept = self._rest.contacts_of_sleepers(self.contacts)
+        self.contacts = self._remembered = contacts.with_others(slept) if contacts else slept
 
     def _forget(self, bodies: Bools) -> None:
-        """Drop the remembered impulses of some bodies, (batch, bodies)."""
-        if self._impulses:
-            gone = bodies[self._impulses.world[:, None], self._impulses.body].any(axis=1)
-            self._impulses = self._impulses.take(np.flatnonzero(~gone))
+        """Begin the next step without the impulses of some bodies, (batch, bodies)."""
+        if self._remembered:
+            gone = bodies[self._remembered.world[:, None], self._remembered.body].any(axis=1)
+            self._remembered = self._remembered.take(np.flatnonzero(~gone))
+
+    def _prepare(self) -> None:
+        """Bring up to date what is made of bodies and their parameters, if any has been added or replaced."""
+        if self._prepared is self.params:
+            return
+        params, before = self.params, self._prepared or BodyParams.empty()
+        self._prepared, self._movers = params, None
+        self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic)
+        self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN)
+        self._narrow_phase = NarrowPhase(params, self._shape_table)
+        self._rest.know(params)
+        changed = params.changed(before)
+        if changed[: len(before.group)].any():
+            self._forget(np.broadcast_to(changed, (self.batch, len(changed))))
+            self._rest.wake(np.broadcast_to(changed, (self.batch, len(changed))), self.contacts)
 
     @property
     def movers(self) -> Span:
@@ -241,7 +236,7 @@ class World:
     def pairs(self) -> Ints:
         """All pairs of shapes that may ever meet, (pairs, 2) rows of `shapes`; of a polygon and a circle, it first."""
         self._prepare()
-        return self._broad_phase.pairs
+        return self._broad_phase.all_pairs()
 
     @property
     def asleep(self) -> Bools:
@@ -266,12 +261,12 @@ class World:
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Take note that static bodies were put elsewhere, or were given a velocity, by writing into `state`."""
         self._movers = None
-        if self._up_to_date():
+        if self._prepared is self.params:
             self._broad_phase.forget_boxes(bodies)
 
     def untouched(self) -> None:
         """Take note that nothing touched in the latest step, which was not taken here."""
-        self.contacts = self._impulses = None
+        self.contacts = self._remembered = None
 
     def memory(self) -> dict[str, Any]:
         """Return what the next step takes over from the last one, arrays that no step changes; `recall` puts it back.
@@ -280,7 +275,7 @@ class World:
         depends on.
         """
         self._prepare()
-        contacts = vars(self._impulses) if self._impulses else {}
+        contacts = vars(self._remembered) if self._remembered else {}
         rest = {"rest": copy.deepcopy(vars(self._rest))} if self.sleeping else {}
         return {"gravity": self.gravity, "contacts": dict(contacts), **rest}
 
@@ -288,7 +283,7 @@ class World:
         """Put back what a call of `memory` returned."""
         self._prepare()
         contacts = memory["contacts"]
-        self.contacts = self._impulses = Contacts(**contacts) if contacts else None
+        self.contacts = self._remembered = Contacts(**contacts) if contacts else None
         vars(self._rest).update(copy.deepcopy(memory.get("rest", {})))
         self.forget_boxes()
 

@@ -28,14 +28,14 @@ OPENED = {
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
     "game.scenes.learn.one_file": ({"MICROLANDER.read_text"}, "comes with the program"),
-    "game.scenes.taste.scene": ({"self.context.settings.open"}, "a part of the panel"),
-    "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),
+    "game.scenes.train.laboratory": ({"self.open"}, "a part of the panel"),
+    "game.scenes.train.landers": ({"self.scene.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }
 STARTED = {
     "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
-    "game.scenes.watch.pilots": ({"subprocess.Popen"}, "the system's editor"),
+    "game.scenes.networks.files": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),
     "game.core.worker_process": ({"pickle.loads"}, "the pipe from its own window"),

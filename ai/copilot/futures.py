@@ -8,7 +8,7 @@ bits; so a plan is flown as it is written down, and never decided anew.
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple, Protocol
 
 import numpy as np
@@ -274,7 +274,8 @@ def roomy(slots: int, moment: Moment) -> LanderEnv:
     # Where each lander has a craft of its own, the usual one is built.
     params = LanderParams(**{name: value for name, value in moment.state["params"].items() if not np.ndim(value)})
     env = LanderEnv(slots, 0, frame_skip=DECISION_STEPS, params=params, ground=moment.ground)
-    env.world.params.quadratic_drag = np.tile(env.world.params.quadratic_drag, (slots, 1, 1))
+    drag = np.tile(env.world.params.quadratic_drag, (slots, 1, 1))
+    env.world.params = replace(env.world.params, quadratic_drag=drag)
     return env
 
 

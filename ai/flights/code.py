@@ -1,4 +1,4 @@
-"""Code of a flight, short enough for a message: `tranq3-`, base64, `-over`.
+"""Code of a flight, short enough for a message: `tranq4-`, base64, `-over`.
 
 It stands for deflated bytes and their checksum. The bytes are start and claim as one line of JSON, a byte for each run
 of equal steps, and for a flight by sticks the moves of both. docs/codes.md describes them.
@@ -31,7 +31,7 @@ from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome
 from ai.lander.push import KEYS, STEPS, Push
 
-VERSION: Final = 3
+VERSION: Final = 4
 BEGIN, END = f"tranq{VERSION}-", "-over"
 _LONGEST_TEXT: Final = 1_000_000  # characters of a text in which codes are looked for
 _LARGEST: Final = 4 * LONGEST  # bytes that a code may unfold to: several for each step
@@ -48,7 +48,7 @@ _MOVES: Final = b"\xff"  # comes before the moves of the sticks
 _USUAL: Final = (
     b'"daily","wind","rung_"pads":3,"wider_pads":true,"untimed":true},"leg":[2,12.5,false]'
     b'"outcome":"CRASHED","points":0,"end":[-{"seed":1,"spawn":"random","pads":1,"mission":"",'
-    b'"easing":{"wider_pads":false,"untimed":false},"area":1,"leg":null,"course":"","barred":"","outcome":"LANDED",'
+    b'"easing":{"wider_pads":false,"untimed":false},"leg":null,"course":"","barred":"","outcome":"LANDED",'
     b'"points":9'
 )
 

@@ -11,12 +11,11 @@ from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS, STARTS, Mission
 from ai.lander.push import Push
-from ai.lander.rules import AREAS, Limits
+from ai.lander.rules import Limits
 from ai.lander.spawns import SPAWNS
 
 WIDER: Final = 1.5  # width of wider pads, in shares of their own
 UNHURRIED: Final = 1200.0  # seconds that a flight may take without its time limit
-AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
 
 End = tuple[float, float, float]  # x, y in metres, angle in rad
@@ -65,7 +64,6 @@ class Start:
     pads: Annotated[int, OneOf((1, 3))] = 1
     mission: Annotated[str, OneOf(("", *MISSIONS))] = ""
     easing: Easing = AS_IT_IS  # what gave the pilot more room
-    area: Annotated[int, OneOf(range(len(AREAS)))] = AREA  # version of its edges, in `ai.lander.rules.AREAS`
 
 
 @dataclass

@@ -49,9 +49,9 @@ def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
         return leg_of(seeds[0], start.leg).begin(start.leg.tank)
     if start.mission:
         env = easing.mission(start.mission).begin(len(seeds))
-        env.limits = env.limits.in_area(start.area)
+        env.limits = env.limits.roomy()
         return env
-    limits = easing.limits(LIMITS).in_area(start.area)
+    limits = easing.limits(LIMITS).roomy()
     ground = ground_of(seeds[0], start.pads, easing.pads)
     env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=limits)
     for slot, seed in enumerate(seeds):  # as each would draw alone
@@ -143,7 +143,7 @@ def _together(recording: Recording) -> object:
     if recording.leg:
         return object()  # a leg of a descent has an environment of its own
     seed = recording.seed if recording.pads > 1 else 0
-    return recording.mission, recording.spawn, recording.pads, seed, recording.easing, recording.area
+    return recording.mission, recording.spawn, recording.pads, seed, recording.easing
 
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:

@@ -136,7 +136,8 @@ class AnywhereEnv(LanderEnv):
         self.sites = tuple(sites)
         self.kind: Ints = np.zeros(num_envs, dtype=np.intp)
         self.settled: Doubles = np.tile(np.array(Site()), (num_envs, 1))
-        self.world.params.quadratic_drag = np.tile(self.world.params.quadratic_drag, (num_envs, 1, 1))
+        drag = np.tile(self.world.params.quadratic_drag, (num_envs, 1, 1))
+        self.world.params = replace(self.world.params, quadratic_drag=drag)
         self._air: Doubles = self.world.params.quadratic_drag[:, self.lander.index]  # (n, 3), a view
         self.set_sites(self.settled)
 

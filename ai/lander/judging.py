@@ -40,7 +40,7 @@ def _touch(env: LanderEnv, flying: Bools) -> Bools:
     touches = env.world.contacts
     if touches is None:
         return np.zeros(env.num_envs, dtype=bool)
-    shapes = env.world.pairs[touches.pair]
+    shapes = touches.shape
     world, part = touches.world, shapes.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
     pad = shapes.max(axis=1) - 3  # the pad's number; the plain, hills and roofs come after the pads
     on_pad = pad < len(env.ground.pads)

@@ -6,7 +6,7 @@ its landers, and pickled for another process.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,7 +15,7 @@ from ai.environment import Doubles, Ints
 from ai.lander.conditions import Conditions
 from ai.lander.ground import Ground
 from ai.lander.rules import LanderParams, Limits
-from engine.world import memory_of_worlds
+from engine.world import World, memory_of_worlds
 
 if TYPE_CHECKING:
     from ai.lander.environment import LanderEnv
@@ -39,12 +39,12 @@ def _one(rows: Doubles) -> Doubles:
     return rows[0] if (rows == rows[0]).all() else rows
 
 
-def _put_air(params: Any, air: Doubles) -> None:
+def _put_air(world: World, air: Doubles) -> None:
     """Replace a table of drag only if it must be: the world is made anew then."""
-    if params.quadratic_drag.ndim == 3:
-        params.quadratic_drag[:] = air
-    elif not (params.quadratic_drag == air).all():
-        params.quadratic_drag = _one(air)
+    if world.params.quadratic_drag.ndim == 3:
+        world.params.quadratic_drag[:] = air
+    elif not (world.params.quadratic_drag == air).all():
+        world.params = replace(world.params, quadratic_drag=_one(air))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ class Moment:
         for name in env.kept:
             setattr(env, name, state["landers"][name].copy())
         world.gravity = _one(state["gravity"])
-        _put_air(world.params, state["air"])
+        _put_air(world, state["air"])
         for name, value in state["bodies"].items():
             setattr(world.state, name, value.copy())
         world.recall(state["contacts"])

@@ -48,11 +48,6 @@ class Cause(IntEnum):
     TILTED = 5  # touched while leaning too far
 
 
-# Edges of the area by version, metres from the middle of the world and up: networks are trained in the first one,
-# people fly in the last, which leaves more room to turn back; a recording says in which it was flown.
-AREAS: Final = ((22.0, 26.0), (30.0, 29.0))
-
-
 @dataclass(frozen=True)
 class Limits:
     """Limits that a touchdown must keep, and that a landing must reach."""
@@ -64,14 +59,13 @@ class Limits:
     rest_tilt: float = 0.15  # rad
     rest_spin: float = 0.3  # rad/s
     rest_steps: int = 30  # physics steps with both feet down and all of the above
-    half_width: float = AREAS[0][0]  # metres from the middle of the world
-    ceiling: float = AREAS[0][1]  # metres
+    half_width: float = 22.0  # metres from the middle of the world
+    ceiling: float = 26.0  # metres
     time: float = 25.0  # seconds
 
-    def in_area(self, version: int) -> Limits:
-        """Return the limits with the edges of one of `AREAS`."""
-        half_width, ceiling = AREAS[version]
-        return replace(self, half_width=half_width, ceiling=ceiling)
+    def roomy(self) -> Limits:
+        """Return the limits with the edges of recorded flights, which leave more room to turn back than in training."""
+        return replace(self, half_width=30.0, ceiling=29.0)
 
     def stricter(self, share: float) -> Limits:
         """Return the limits with those of touches times `share`: an agent that learns under them keeps a margin."""

@@ -13,6 +13,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from threading import Thread, main_thread
@@ -37,21 +38,20 @@ def serve(link: Connection, where: Connection, path: str, source: str, kind: str
     """
     _stand_alone(path)
     Thread(target=_tell_where, args=(where, path), daemon=True).start()
-    number, answer, alive = 0, None, True
-    while alive:
-        given, wrong = None, (0, "")
+    number, answer = 0, None
+    while True:
         try:
             if answer is None:
                 answer, given = load(kind, path, source)
             else:
                 number, question = link.recv()
                 given = answer(question)
+            link.send((number, given, 0, ""))
         except BaseException as error:  # the file may raise whatever it likes and whenever: its signals come here too
-            wrong, alive = problem(error, path), answer is not None
-        try:
-            link.send((number, given, *wrong))
-        except OSError:
-            return
+            with suppress(OSError):  # nobody asks any more
+                link.send((number, None, *problem(error, path)))
+            if answer is None:
+                return
 
 
 def _stand_alone(path: str) -> None:

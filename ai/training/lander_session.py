@@ -9,7 +9,6 @@ import numpy as np
 
 from ai.environment import StepResult
 from ai.lander.environment import LanderEnv
-from ai.training.config import in_force
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, REVERTED, Checkpoint, Validation
 from ai.training.loop import Progress, Training
@@ -53,8 +52,7 @@ class LanderSession(Session[Training]):
         agent, training = self.training.agent, self.training
         values, gradients, sensed = agent.online.values, agent.online.gradients, training.observation[CAREFUL]
         network = NetworkState(values.copy(), gradients.copy(), sensed.copy(), agent.decisions)
-        now = in_force(training.config, agent.decisions, training.episodes)
-        self.messages += (self._swarm_state, network, now)
+        self.messages += (self._swarm_state, network)
 
     def tell(self, progress: Progress) -> None:
         now = self.training.clock()

@@ -114,8 +114,7 @@ class Training(Run):
         self._clocked: deque[float] = deque(maxlen=100)  # `seconds` at the last decisions
         self._began_learning = 0  # gradient steps that were taken before the run began, or went on
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
-        self._validated: DeepQAgent | None = None  # while its flights are under way
-        self._flights: Trial[Score] | None = None
+        self._flights: Trial[Score] | None = None  # of a validation that is under way
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
         task = self.task
@@ -204,49 +203,49 @@ class Training(Run):
         if not every or now // every == before // every:
             return self.validate(self.validation_pace)
         score = self.validate()  # of the one before, if it is still under way
-        self._begin_validation(self.last_agent())
+        self._begin_validation()
         return score if self.validation_pace else self.validate()
 
-    def _begin_validation(self, agent: DeepQAgent) -> None:
+    def _begin_validation(self) -> None:
         self._end_validation()
-        self._validated = agent
-        self._flights = self.task.trial(agent, self.validation_episodes, VALIDATION_SEED)
+        self._flights = self._validation(self.last_agent())
 
-    def validate(self, decisions: int | None = None) -> Score | None:
-        """Go on with the validation that is under way, for so many decisions of its flights, or to its end.
-
-        Returns the score once there is one; the network is kept if it is the best so far.
-        """
-        if self._flights is None or self._validated is None:
-            return None
-        try:
-            for _ in range(decisions) if decisions else repeat(None):
-                if self.stopping():
-                    self._end_validation()
-                    return None
-                next(self._flights)
-        except StopIteration as done:
-            score: Score = done.value
-        except BaseException:
-            self._end_validation()
-            raise
-        else:
-            return None
-        agent = self._validated
-        self._end_validation()
+    def _validation(self, agent: DeepQAgent) -> Trial[Score]:
+        """Fly validation episodes; keep the network if it is the best so far."""
+        score: Score = yield from self.task.trial(agent, self.validation_episodes, VALIDATION_SEED)
         self.evaluated = agent.decisions
         if score.better_than(self.best):
             self.best, self.best_network = score, _network(agent)
         return score
 
+    def validate(self, decisions: int | None = None) -> Score | None:
+        """Go on with the validation that is under way, for so many decisions of its flights, or to its end.
+
+        Returns the score once there is one.
+        """
+        flights, self._flights = self._flights, None
+        if flights is None:
+            return None
+        for _ in range(decisions) if decisions else repeat(None):
+            if self.stopping():
+                flights.close()
+                return None
+            try:
+                next(flights)
+            except StopIteration as done:
+                score: Score = done.value
+                return score
+        self._flights = flights
+        return None
+
     def _end_validation(self) -> None:
         if self._flights is not None:
             self._flights.close()
-        self._flights = self._validated = None
+        self._flights = None
 
     def evaluate(self) -> Score | None:
         """Try the validation episodes, and keep the network if it is the best so far; None if that was stopped."""
-        self._begin_validation(self.last_agent())
+        self._begin_validation()
         return self.validate()
 
     def best_agent(self) -> DeepQAgent:

@@ -60,6 +60,10 @@ class _Learner(DeepQAgent):
         self.flown()
         return actions, result
 
+    def learn(self) -> float | None:
+        """Take gradient steps, once there is any pay to learn from."""
+        return super().learn() if self.paying.points.any() else None
+
     def store(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
         super().store(observation, actions, replace(result, reward=self.paying.latest), success)
 
@@ -127,7 +131,7 @@ class Upbringing(Training):
         env, fresh = self.env, self.env.steps == 0
         self._starts[fresh] = np.column_stack([env.position, env.velocity, env.angle, env.angular_velocity])[fresh]
         self.agent.rests = self.resting
-        progress = super().advance()
+        progress: Progress = super().advance()
         wanted = self._scouts is not None or (self.question is None and self.agent.decisions >= BEFORE)
         for _ in range(_SCOUTING if wanted else 0):
             self._go_scouting()

@@ -24,11 +24,10 @@ class Scene:
         takes_files: whether files can be dropped here that are no flights.
         typing: whether a text is being typed, which then takes what is pasted.
         takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
-        notes_low: whether notes stand near its lower edge now, for words at its head are needed.
 
     """
 
-    takes_files = typing = takes_switch = notes_low = False
+    takes_files = typing = takes_switch = False
 
     def __init__(self, context: Context) -> None:
         self.context = context

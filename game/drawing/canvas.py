@@ -55,6 +55,7 @@ class Canvas:
         view: all that is seen, in points.
         origin: where the point (0, 0) lies on the surface, in pixels.
         size: the width and height in pixels of the page, or of all that is seen.
+        row: points at the foot of what is read that are a message's now.
         palette: the player's colours for within and beyond limits.
         zoom: factor by which the player wants text enlarged.
         pointer: position of the mouse in points; None while it is not in use.
@@ -64,7 +65,7 @@ class Canvas:
 
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
-        self.scale, self.zoom = 0.0, 1.0
+        self.scale, self.zoom, self.row = 0.0, 1.0, 0.0
         self._whole: Canvas | None = None
         self._type = 0.0  # of a canvas that is no part of a window
         self.pointer: Point | None = None
@@ -102,7 +103,7 @@ class Canvas:
         reading._whole, reading.scale = whole, whole.type
         reading.size, reading.origin = whole.surface.get_size(), (0, 0)
         width, height = reading.size
-        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale)
+        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale - whole.row)
         reading.pointer = None if whole.pointer is None else reading.points(whole.pixels(whole.pointer))
         return reading
 
@@ -172,11 +173,18 @@ class Canvas:
             self.surface.set_clip(before)
 
     def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
-        """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
+        """Note what stands in a box, in points, and a function that says what it means now, for those who ask.
+
+        Of what is scrolled away nothing is explained.
+        """
         x, y, width, height = pygame.FRect(box)
-        (left, top), share = self.pixels((x, y)), self.scale / self.type
-        area = pygame.FRect(left / self.type, top / self.type, width * share, height * share)
-        self.explained.append(Explanation(area, what, now))
+        area = pygame.FRect(*self.pixels((x, y)), width * self.scale, height * self.scale)
+        seen = area.clip(pygame.FRect(self.surface.get_clip()))
+        if seen.height > area.height / 2:
+            corner = seen.left / self.type, seen.top / self.type
+            self.explained.append(
+                Explanation(pygame.FRect(corner, (seen.width / self.type, seen.height / self.type)), what, now)
+            )
 
     # Text
 

@@ -267,8 +267,8 @@ def _paint_all(view: NetworkView, light: Canvas, signs: Canvas) -> Generator[Non
         signs.marker("ring", centres[hovered[0]][hovered[1]], 2 * view.radius + 6, INK)
     y, (adds, takes) = _last_line(view), texts.NETWORK_VIEW_LEGEND[view.show]
     signs.pill((_MARGIN, y - 5, 9, 2), _ADDS)
-    signs.text(adds, (_MARGIN + 13, y), size=LABEL - 1, colour=MUTE)
-    word = signs.text(takes, (_MARGIN + view.box.width, y), size=LABEL - 1, colour=MUTE, align="right")
+    signs.text(adds, (_MARGIN + 13, y), size=LABEL, colour=MUTE)
+    word = signs.text(takes, (_MARGIN + view.box.width, y), size=LABEL, colour=MUTE, align="right")
     signs.pill((word.left - 13, y - 5, 9, 2), _TAKES)
     return light, signs
 
@@ -319,7 +319,7 @@ def _paint_names(view: NetworkView, signs: Canvas, number: int, centres: list[Po
     if shown < column.total or not names:
         words = texts.NETWORK_VIEW_ALL if shown == column.total else texts.NETWORK_VIEW_SOME
         caption = words.format(shown=shown, count=column.total)
-        signs.text(caption, (centres[0][0], _last_line(view)), size=LABEL - 1, colour=MUTE, align="centre")
+        signs.text(caption, (centres[0][0], _last_line(view)), size=LABEL, colour=MUTE, align="centre")
 
 
 def _last_line(view: NetworkView) -> float:

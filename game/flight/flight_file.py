@@ -39,7 +39,7 @@ from game.core import texts
 
 T = TypeVar("T")
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 7
+VERSION: Final = 8
 _LARGEST: Final = 2_000_000  # bytes
 LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems

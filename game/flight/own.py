@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ai.files import brief
 from ai.lander.environment import LanderEnv
+from ai.pilots.folder import Measured, PilotFolder
 from ai.pilots.own import MeasuredPilot, OwnPilot
-from ai.pilots.shelf import Measured, Shelf
 from ai.training.tasks import Evaluation, flown
 from game.core import texts
 from game.flight import networks
@@ -70,5 +70,5 @@ def measure(user_dir: Path, path: Path) -> Generator[list[Any], None, None]:
             except StopIteration as done:
                 score = Evaluation.of(done.value)
     result = Measured(path.stem, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(began, 3))
-    Shelf(user_dir).keep(result)
+    PilotFolder(user_dir).keep(result)
     yield [1.0]

@@ -118,6 +118,7 @@ class App:
         self._last = time_now
         for _ in range(steps):
             self.notes.update()
+            self.canvas.row = self.notes.height(self.canvas.reading)
             if problem := self.settings_writer.problem():
                 self.notes.show(problem)
             self._guarded(self.scenes.update)
@@ -272,12 +273,6 @@ class App:
         if page := arrival(event, self.scenes.top, self.context):
             self.scenes.apply(page)
             return
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            canvas = self.canvas.reading
-            for row in self.scenes.top.hint_rows(canvas):
-                if (hint := row.at(canvas, event.pos)) and hint.run:
-                    self.scenes.apply(hint.run())
-                    return
         self.scenes.handle_event(event)
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
@@ -294,7 +289,7 @@ class App:
         self.canvas.explained.clear()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._guarded(lambda: self.scan.draw(self.scenes.top, self.canvas))
-        self.notes.draw(self.canvas, low=self.scenes.top.notes_low)
+        self.notes.draw(self.canvas.reading)
         self.window.flip()
 
     def _save_screenshot(self) -> None:

@@ -29,7 +29,7 @@ NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
-    SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
+    SwarmState: "swarm_state", NetworkState: "network_state", Lesson: "lesson",
     Confusion: "confusion", FirstLanding: "first_landing",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
@@ -37,7 +37,7 @@ _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
 )
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES
 # What an experiment has reported that takes the place of the run.
-_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "in_force"
+_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks"
 _BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
 
 
@@ -52,7 +52,7 @@ class TrainingRun:
 
     Attributes:
         runs: number of runs so far.
-        swarm_state, network_state, in_force, lesson, confusion, first_landing: the latest message of each kind.
+        swarm_state, network_state, lesson, confusion, first_landing: the latest message of each kind.
         swarms, networks: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
@@ -84,7 +84,6 @@ class TrainingRun:
         self.history = History(self.kind.session.columns)
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
-        self.in_force: InForce | None = None
         self.lesson: Any = None
         self.first_landing: FirstLanding | None = None
         self.confusion: Confusion | None = None
@@ -128,6 +127,11 @@ class TrainingRun:
         if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
             return False
         return self.keeps and self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
+
+    @property
+    def in_force(self) -> InForce | None:
+        """Values of the scheduled settings now; None before the run has said where it stands."""
+        return self.kind.in_force(self.config, self.history) if self.alive and len(self.history) else None
 
     @property
     def turns(self) -> int:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import Field, asdict, dataclass, fields
+from dataclasses import Field, asdict, dataclass, field, fields
 from functools import cache
 from operator import attrgetter
 from typing import Any, Final, Literal
@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config, InForce
 from ai.training.experiments import named, sabotaged
+from ai.training.history import History
 from ai.training.session import Session
 from game.core import texts
 from game.core.catalogue import capital
@@ -168,7 +169,10 @@ class RunKind:
     words: Callable[[], Mapping[str, tuple[str, str]]]  # the label of each preset, and a sentence about it
     first: tuple[str, ...]  # names of the few knobs to begin with
     page: tuple[str, ...]  # and of those on one page, on demand; all others are for `--set` of the command
+    chapters: Mapping[str, str] = field(default_factory=dict)  # of Learn, by the names of the knobs they explain
     sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
+    # Values of the scheduled settings at the latest point of a run.
+    in_force: Callable[[Configuration, History], InForce] = lambda *_: InForce({})
     grace: float = 3.0  # seconds that a run has to end by itself when the window closes it
     patience: float = PATIENCE  # seconds for a turn of its worker
 
@@ -207,7 +211,7 @@ class RunSettings:
         config, seed: in effect, without waiting changes.
         draft, draft_seed: those that the knobs show.
         named: the preset, or sabotage of one, that the draft is or started from.
-        in_force: effective values, from the run's latest message.
+        in_force: effective values of the scheduled settings.
         problem: why the last value was refused.
         put_aside: the draft that a preset has replaced, until the next change.
 
@@ -264,6 +268,13 @@ class RunSettings:
     def waiting(self) -> list[str]:
         """Names of the knobs whose changes wait for a new run."""
         return self._different(self.draft, self.config) + [SEED] * (self.draft_seed != self.seed)
+
+    def change(self, name: str) -> dict[str, str]:
+        """Return what a setting is in effect, and what it is to be, in words."""
+        if name == SEED:
+            return {"before": figure(self.seed), "after": figure(self.draft_seed)}
+        read = self.knob_descriptions[name].read
+        return {"before": figure(read(self.config)), "after": figure(read(self.draft))}
 
     def now(self, name: str) -> float | None:
         """Return the value in effect at this moment, such as a schedule's; None if it is the knob's own."""

@@ -32,7 +32,7 @@ _GUTTER: Final = 34.0  # points for the grid lines' numbers, on the right
 _APART: Final = 8.0  # points between the label and the latest number
 _MARGIN: Final = 6.0  # points of the sheet around the box
 _AXES: Final = mix(FAINT, MUTE, 0.55)
-_AXES_SIZE: Final = LABEL - 1.5
+_AXES_SIZE: Final = LABEL
 _REST: Final = 6  # steps of 1/60 s between two drawings of new numbers
 _EASE: Final = 0.2
 _REACH: Final = 5.0  # points from a tick within which its caption shows
@@ -74,8 +74,7 @@ class Chart:
         self.cursor: float | None = None  # an x, for all charts of a row
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
-        self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
-        self.painted_latest: tuple[float | None, ...] = ()  # number of each run, as the sheet was painted
+        self.caption = ""  # said below the chart
         self._painted: Painted | None = None  # until the numbers or the window change
         self._others: tuple[object, Canvas] | None = None  # the runs behind the current one, and what they look like
         self._stale = True
@@ -114,10 +113,7 @@ class Chart:
     # Data
 
     def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = (), caption: str = "") -> None:
-        """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing.
-
-        What is said of the numbers, the `caption`, is `painted_caption` from the frame on that shows them.
-        """
+        """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing."""
         runs = [each.logarithmic() if self._log else each for each in series]
         if len(runs) == len(self.runs):  # of one that is the same, what was painted stays
             runs = [old if run.same(old) else run for run, old in zip(runs, self.runs, strict=True)]
@@ -202,7 +198,6 @@ class Chart:
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
-        self.painted_caption, self.painted_latest = self.caption, tuple(run.last() for run in self.runs)
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)

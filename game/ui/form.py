@@ -14,8 +14,8 @@ from game.drawing.canvas import Canvas
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.actions import Action, Table, answering, hints_of
 from game.ui.context import Context
-from game.ui.hints import Hint
-from game.ui.widget import OnPress, PointsManager, Widget
+from game.ui.hints import Hint, HintRow
+from game.ui.widget import NOWHERE, OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)
 Direction = tuple[int, int]
@@ -27,6 +27,24 @@ _REPEAT_AFTER: Final = 24
 _REPEAT_EVERY: Final = 4
 
 
+class HintButton(Widget):
+    """Hint, to be pressed by the mouse or the one switch: the focus passes it over, for its key does the same."""
+
+    def __init__(self, hint: Hint) -> None:
+        super().__init__(NOWHERE, hint.meaning)
+        self.hint = hint
+
+    def place(self, hint: Hint, box: pygame.FRect) -> None:
+        """Stand for this hint, in a box in points."""
+        self.hint, self.label, self.rect = hint, hint.meaning, pygame.Rect(box)
+
+    def press(self) -> Transition | None:
+        return self.hint.run() if self.hint.run else None
+
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        return bool(self.rect.collidepoint(hover_x, hover_y))
+
+
 class Form:
     """Widgets of a screen, one of them in focus; added in the order of Tab.
 
@@ -35,17 +53,16 @@ class Form:
     its own looks at `typing` before it takes an event, or at `used` after it has passed the event on.
 
     Attributes:
+        keys: the hints that can be pressed.
         used: whether a widget used the last event, or it moved the focus.
-        in_order: whether the end of a column leads on to the next one, and not back to its beginning.
 
     """
-
-    in_order = False
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
         self.widgets: list[Widget] = []
-        self._context, self._on_back = context, on_back
+        self.keys: list[HintButton] = []
+        self._context, self.back = context, on_back
         self._index = 0
         self._held_steps = 0
         self._held_direction: Command | None = None
@@ -72,7 +89,7 @@ class Form:
         return Action(Command.CONFIRM, self.confirm, hint)
 
     def goes_back(self, hint: str) -> Action:
-        return Action(Command.BACK, self._on_back, hint)
+        return Action(Command.BACK, self.back, hint)
 
     @property
     def hints(self) -> list[Hint]:
@@ -111,18 +128,30 @@ class Form:
     def focus(self, widget: Widget) -> None:
         self._index = self.widgets.index(widget)
 
+    def lay_keys(self, rows: Sequence[HintRow], canvas: Canvas) -> None:
+        """Have the hints of these rows pressed where they stand; those of a card come before the flight's behind it."""
+        found = [pair for row in reversed(rows) for pair in zip(row.hints, row.boxes(canvas), strict=True)]
+        found = [(hint, box) for hint, box in found if hint.run]
+        self.keys = self.keys[: len(found)] + [HintButton(hint) for hint, _ in found[len(self.keys) :]]
+        for key, (hint, box) in zip(self.keys, found, strict=True):
+            key.place(hint, box)
+
     def find(self, key: str) -> Widget | None:
         """Return the widget of a key, if there is one."""
         return next((widget for widget in self.widgets if widget.key == key), None)
 
-    def follow(self, before: Form) -> None:
-        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place."""
+    def follow(self, before: Form, otherwise: Widget | None = None) -> None:
+        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place.
+
+        `otherwise` has the focus where its key is gone.
+        """
+        self.manager.mouse_position = before.manager.mouse_position
         for widget in self.widgets:
             if same := before.find(widget.key):
                 widget.warmth = same.warmth
         if before.focused and self.widgets:
             place = min(before.widgets.index(before.focused), len(self.widgets) - 1)
-            self.focus(self.find(before.focused.key) or self.widgets[place])
+            self.focus(self.find(before.focused.key) or otherwise or self.widgets[place])
 
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
         """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
@@ -173,7 +202,7 @@ class Form:
         elif command is Command.CONFIRM and widget:
             return self._press()
         elif command in (Command.BACK, Command.PAUSE):
-            return self._on_back()
+            return self.back()
         else:
             self.used = False
         return None
@@ -193,6 +222,11 @@ class Form:
             widget.paint(canvas)
 
     def _handle_mouse(self, event: pygame.event.Event) -> Transition | None:
+        under = (key for key in self.keys if key.hover_point(*event.pos))
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and (key := next(under, None)):
+            outcome = key.press()
+            self._acted = True  # and has made its own sounds
+            return outcome
         moves = event.type == pygame.MOUSEMOTION and self.typing  # a nudge of the mouse must not end typing
         for index, widget in enumerate(self.widgets):
             if (
@@ -214,7 +248,7 @@ class Form:
             return
         direction = _ARROWS[command]
         if not (direction[0] and self.widgets[self._index].shift(direction[0])):
-            self._index = neighbour([w.box for w in self.widgets], self._index, direction, in_order=self.in_order)
+            self._index = neighbour([w.box for w in self.widgets], self._index, direction)
 
     def _repeat(self) -> None:
         """Go on moving while a direction is held: sideways the value, up and down the focus."""
@@ -278,8 +312,15 @@ class FormScene(Scene):
         return self.form.hints or hints_of(self.actions(), self.context.controls)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self.lay_keys()
         moves = tab(event) != 0 and not self.takes_tab
         return self.form.handle_event(event, () if moves else self.actions())
+
+    def lay_keys(self) -> None:
+        """Have the hints pressed where they stand now."""
+        canvas = self.context.reading()
+        self.form.lay_keys(self.hint_rows(canvas), canvas)
 
     def update(self) -> Transition | None:
         return self.form.update()
@@ -287,31 +328,6 @@ class FormScene(Scene):
     def draw_hints(self, canvas: Canvas) -> None:
         for row in self.hint_rows(canvas):
             row.draw(canvas)
-
-
-class Part:
-    """Part of a form whose widgets a panel of its own lays out; the form has them once they are added to it."""
-
-    def __init__(self, form: Form) -> None:
-        self._form, self.widgets = form, list[Widget]()
-        self.controls, self.in_order = form.controls, True
-
-    @property
-    def focused(self) -> Widget | None:
-        focused = self._form.focused
-        return focused if focused in self.widgets else None
-
-    def add(self, widget: W) -> W:
-        widget.join(self._form.manager)
-        self.widgets.append(widget)
-        return widget
-
-    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Replace some adjacent widgets by others, of the form as well."""
-        self._form.replace(old, new)
-        place = self.widgets.index(old[0]) if old else len(self.widgets)
-        self.widgets = [each for each in self.widgets if each not in old]
-        self.widgets[place:place] = new
 
 
 def _reading(widget: Widget | None) -> object:
@@ -332,11 +348,11 @@ def tab(event: pygame.event.Event) -> int:
     return -1 if getattr(event, "mod", 0) & pygame.KMOD_SHIFT else 1
 
 
-def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, *, in_order: bool = False) -> int:
+def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
     """Return the index of the nearest box in a direction; up and down wrap around.
 
-    With `in_order`, distances up and down are between edges, so that of two columns side by side the first one comes
-    first, and the lower end of a column leads to the next box in order, which is the first one of the next column.
+    Distances up and down are between edges, so that of two columns side by side the first one comes first. The lower
+    end of a column leads to the next box in order, which is the first one of the next column.
 
     A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
     leave a row only at its end.
@@ -344,9 +360,9 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
     here = boxes[current]
 
     def ahead(box: pygame.Rect) -> float:
-        if direction[1] and in_order:
+        if direction[1]:
             return box.top - here.bottom + 1 if direction[1] > 0 else here.top - box.bottom + 1
-        return direction[0] * (box.centerx - here.centerx) + direction[1] * (box.centery - here.centery)
+        return direction[0] * (box.centerx - here.centerx)
 
     def aside(box: pygame.Rect) -> float:
         if direction[0]:
@@ -367,8 +383,4 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
         forward = [index for index in row if index in apart] or row or apart
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
-    if direction[1] and in_order:
-        return (current + direction[1]) % len(boxes)
-    if direction[1] and others:
-        return min([current, *others], key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
-    return current
+    return (current + direction[1]) % len(boxes) if direction[1] else current

@@ -59,11 +59,6 @@ class HintRow:
         _, widths = self._fitted(canvas)
         return self._boxes(widths)
 
-    def at(self, canvas: Canvas, point: Point) -> Hint | None:
-        """Return the hint that a click at a point runs, if any."""
-        boxes = zip(self.hints, self.boxes(canvas), strict=True)
-        return next((hint for hint, box in boxes if hint.run and box.collidepoint(point)), None)
-
     def draw(self, canvas: Canvas) -> None:
         """Write the hints; the one below the mouse stands out if it can be clicked."""
         size, widths = self._fitted(canvas)  # once: measuring words costs as much as writing them

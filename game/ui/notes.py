@@ -1,4 +1,4 @@
-"""Notes: short messages over any screen, under its head in the middle, or near its lower edge."""
+"""Notes: short messages on any screen, in a row below all others."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import Final
 import pygame
 
 from game.drawing.canvas import Canvas
-from game.drawing.cursor import LEADING, Cursor
-from game.drawing.prose import lines
+from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, INK, SMALL
 
 _STEPS_SHOWN: Final = 60 * 5
@@ -16,12 +15,12 @@ _STEPS_FADING: Final = 20
 _LONGEST: Final = 220  # characters
 _WIDEST: Final = 480.0  # points of a line; a longer message takes more lines
 _MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
-_COVER: Final = 0.96  # opacity of the panel, over any background
-_HIGH, _LOW = 0.10, 0.70  # where its top may be, in shares of the height that is left
+_COVER: Final = 0.96  # opacity of its strip, over any background
+_APART: Final = 8.0  # points from the strip to the window's edges
 
 
 class Note:
-    """Note that shows one message at a time, for five seconds; it is laid out on the canvas for text that flows.
+    """Note that shows one message at a time, for five seconds; the screen gives way to it.
 
     Attributes:
         text: the message that is shown, or was shown last.
@@ -43,19 +42,25 @@ class Note:
         """Advance by 1/60 s."""
         self._left = max(0, self._left - 1)
 
-    def draw(self, canvas: Canvas, *, low: bool = False) -> None:
-        """Draw the message, if one is to be seen."""
-        if not self._left:
-            return
-        alpha, reading, (beside, above) = min(1.0, self._left / _STEPS_FADING), canvas.reading, _MARGINS
-        view = reading.view
-        wrapped = lines(self.text, SMALL, "regular", min(_WIDEST, view.width - 4 * beside), reading.scale)
-        width = max(reading.text_width(line, size=SMALL) for line in wrapped) + 2 * beside
-        height = len(wrapped) * LEADING * SMALL + 2 * above
-        top = (_LOW if low else _HIGH) * (view.height - height)
-        box = pygame.FRect((view.width - width) / 2, top, width, height)
-        reading.panel(box, _COVER, alpha)
-        reading.outline(box, 8, FAINT, alpha=alpha)
-        room = box.width - 2 * beside + 1
-        words = Cursor(box.left + beside, box.top + above, room, reading.scale, reading, size=SMALL, colour=INK)
-        words.text(self.text, "centre", alpha)
+    def height(self, canvas: Canvas) -> float:
+        """Return how high its row is, in points of what is read; 0 while nothing is said."""
+        return self._write(canvas, drawn=False) if self._left else 0.0
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the message, if one is to be seen, in its row below all others."""
+        if self._left:
+            self._write(canvas, drawn=True)
+
+    def _write(self, canvas: Canvas, *, drawn: bool) -> float:
+        view, (beside, above) = canvas.view, _MARGINS
+        room = min(_WIDEST, view.width - 4 * beside)
+        words = Cursor(view.centerx - room / 2, 0.0, room, canvas.scale, size=SMALL, colour=INK)
+        high = words.text(self.text).height + 2 * above
+        if drawn:
+            alpha, widest = min(1.0, self._left / _STEPS_FADING), min(words.measured(self.text), room) + 2 * beside
+            box = pygame.FRect(view.centerx - widest / 2, view.bottom + _APART / 2, widest, high)
+            canvas.panel(box, _COVER, alpha)
+            canvas.outline(box, 8, FAINT, alpha=alpha)
+            words.canvas, words.y = canvas, box.top + above
+            words.text(self.text, "centre", alpha)
+        return high + _APART

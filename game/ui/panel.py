@@ -7,7 +7,7 @@ the room that there is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Concatenate, Final, ParamSpec, TypeVar
@@ -24,7 +24,7 @@ from game.ui.widget import RowWidget, Widget
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
-    from game.ui.form import Form, Part
+    from game.ui.form import Form
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
@@ -59,9 +59,10 @@ def _adding(kind: Callable[P, W]) -> Callable[Concatenate[Column, P], W]:
 class Column:
     """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
 
-    def __init__(self, form: Form | Part) -> None:
+    def __init__(self, form: Form, within: Column | None = None) -> None:
         self.rows: list[Row] = []
-        self._form, self._widgets = form, list[Widget]()
+        self._form, self._within = form, within
+        self.widgets: list[Widget] = []
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
@@ -74,9 +75,20 @@ class Column:
 
     def clear(self) -> None:
         """Take all rows away with their widgets, which are the last of the form, to describe others."""
-        self._form.replace(self._widgets, ())
-        self._widgets.clear()
+        self._form.replace(self.widgets, ())
+        for widget in self.widgets:
+            for column in self._around:
+                column.widgets.remove(widget)
+        self.widgets.clear()
         self.rows.clear()
+
+    @property
+    def _around(self) -> Iterator[Column]:
+        """The columns of which this one is a part, the nearest first."""
+        column = self._within
+        while column:
+            yield column
+            column = column._within
 
     # Words and figures
 
@@ -130,22 +142,25 @@ class Column:
     def widget(self, widget: W) -> W:
         """Add a widget, as the next one of the form."""
         self.add(widget.lay)
-        self._widgets.append(widget)
+        return self._take(widget)
+
+    def _take(self, widget: W) -> W:
+        for column in (self, *self._around):
+            column.widgets.append(widget)
         return self._form.add(widget)
 
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
     slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
-    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
+    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT, colour: Colour = MUTE) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        return self.flow([ButtonRow(label, press, size=size) for label, press in words])
+        return self.flow([ButtonRow(label, press, size=size, colour=colour) for label, press in words])
 
     def flow(self, widgets: Sequence[F]) -> list[F]:
         """Add widgets side by side, each as wide as its words, on as many lines as they need."""
-        added = [self._form.add(widget) for widget in widgets]
+        added = [self._take(widget) for widget in widgets]
         for widget in added:
             widget.pad = _LOW
-        self._widgets += added
         self.add(partial(_write_words, added))
         return added
 
@@ -153,7 +168,7 @@ class Column:
 
     def beside(self, shares: Sequence[float], least: float, apart: float = 64.0) -> list[Column]:
         """Add columns side by side, each as wide as its share; below each other where one would lack `least`."""
-        columns = [Column(self._form) for _ in shares]
+        columns = [Column(self._form, self) for _ in shares]
         self.add(lambda cursor: cursor.beside([column.write for column in columns], shares, least, apart))
         return columns
 
@@ -181,9 +196,8 @@ class Panel(Column):
 
     """
 
-    def __init__(self, form: Form | Part) -> None:
+    def __init__(self, form: Form) -> None:
         super().__init__(form)
-        form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)
         self.height = self.scrolled = 0.0
         self._shown: Widget | None = None  # the widget that was in focus when it was last laid out
@@ -196,7 +210,7 @@ class Panel(Column):
     def lay_out(self, box: pygame.FRect, scale: float) -> None:
         same, self.box = box == self.box, box
         self._measure(scale)
-        focused = self._form.focused
+        focused = self._form.focused if self._form.focused in self.widgets else None
         if focused is not self._shown or not same:
             self._shown = focused
             if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
@@ -214,9 +228,9 @@ class Panel(Column):
         return Cursor(box.left, box.top - self.scrolled, box.width, scale, canvas, pygame.FRect(box))
 
     def _reveal(self, widget: pygame.FRect, which: Widget) -> None:
-        if which is self._form.widgets[0]:
+        if which is self.widgets[0]:
             self.scrolled = 0.0  # with what stands above it
-        elif which is self._form.widgets[-1]:
+        elif which is self.widgets[-1]:
             self.scrolled = min(self.height, self.scrolled + widget.top - self.box.top - _ABOVE)  # with what is below
         elif widget.top < self.box.top + _ABOVE:
             self.scrolled += widget.top - self.box.top - _ABOVE

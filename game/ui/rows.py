@@ -41,7 +41,12 @@ def percent(share: float) -> str:
 
 
 class ButtonRow(RowWidget):
-    """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus."""
+    """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus.
+
+    Attributes:
+        size: of the words, in points.
+
+    """
 
     acts = True
 
@@ -57,7 +62,7 @@ class ButtonRow(RowWidget):
         colour: Colour = MUTE,
     ) -> None:
         super().__init__(NOWHERE, label)
-        self._on_press, self._size, self._weight, self._colour = press, size, weight, colour
+        self._on_press, self.size, self._weight, self._colour = press, size, weight, colour
         self._aside, self._figure = aside, figure
 
     def press(self) -> Transition | None:
@@ -65,19 +70,19 @@ class ButtonRow(RowWidget):
 
     def measured(self, cursor: Cursor) -> float:
         """Return the width of its words on one line, with something to spare."""
-        return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
+        return cursor.in_style(self.size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
-        label = cursor.in_style(self._size, mix(self._colour, INK, self.warmth), self._weight)
+        label = cursor.in_style(self.size, mix(self._colour, INK, self.warmth), self._weight)
         top, wide, figure = cursor.y, min(label.measured(self.label), cursor.width), said(self._figure)
         label.text(self.label)
         if cursor.canvas and self.warmth * wide > 1:
-            y = label.y - 0.05 * self._size + 2
+            y = label.y - 0.05 * self.size + 2
             cursor.canvas.line((cursor.left, y), (cursor.left + wide * self.warmth, y), NET, 2, self.warmth)
         if figure:
             beside = cursor.in_style(TEXT, HUMAN)
             if wide + _WORDS + beside.measured(figure) <= cursor.width:
-                beside.left, beside.y = cursor.left + wide + _WORDS, top + BASELINE * (self._size - TEXT)
+                beside.left, beside.y = cursor.left + wide + _WORDS, top + BASELINE * (self.size - TEXT)
                 beside.text(figure)
             else:
                 beside.y = label.y
@@ -113,7 +118,7 @@ class RunRow(ButtonRow):
 
     def write(self, cursor: Cursor) -> None:
         if cursor.canvas:
-            middle = cursor.y + LEADING * self._size / 2
+            middle = cursor.y + LEADING * self.size / 2
             draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
         name = replace(cursor, left=cursor.left + _SWATCH, width=cursor.width - _SWATCH)
         super().write(name)
@@ -132,12 +137,8 @@ class ToggleRow(RowWidget):
         self.value = not self.value
         self._on_change(self.value)
 
-    def shift(self, direction: int) -> bool:
-        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
-        if self.value == (direction > 0):
-            return False
+    def advance(self) -> None:
         self.press()
-        return True
 
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)

@@ -14,7 +14,6 @@ from game.input.controls import Command, Held
 from game.input.layout import place_of
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.hints import Hint
 from game.ui.listing import ListRow
 from game.ui.widget import Widget
 
@@ -26,11 +25,10 @@ _LEAST: Final = 12  # steps between two choices: a hand that trembles presses on
 
 @dataclass(frozen=True)
 class Stop:
-    """One thing that can be chosen: a hint, or a widget, or a row of a list; `box` is in points."""
+    """One thing that can be chosen: a widget, which may be a hint, or a row of a list; `box` is in points."""
 
     box: pygame.FRect
-    hint: Hint | None = None
-    widget: Widget | None = None
+    widget: Widget
     row: int = -1
 
 
@@ -52,13 +50,11 @@ class SwitchScan:
     def stops(self, scene: Scene, canvas: Canvas) -> list[Stop]:
         """Return what can be chosen: the widgets in their order, and then the hints that a click would run."""
         form, canvas = _form_of(scene), canvas.reading
-        confirm = form.confirm if form else None
-        found = [stop for widget in (form.widgets if form else ()) for stop in _stops_of(widget)]
-        for row in reversed(scene.hint_rows(canvas)):  # the hints of a card come before those of the flight behind it
-            for hint, box in zip(row.hints, row.boxes(canvas), strict=True):
-                if hint.run and hint.run != confirm:
-                    found.append(Stop(box, hint=hint))
-        return found
+        if form is None:
+            return []
+        form.lay_keys(scene.hint_rows(canvas), canvas)
+        keys = [key for key in form.keys if key.hint.run != form.confirm]
+        return [stop for widget in (*form.widgets, *keys) for stop in _stops_of(widget)]
 
     def update(self, scene: Scene, canvas: Canvas) -> Transition | None:
         """Advance by 1/60 s; return what a long press in flight leads to."""
@@ -117,15 +113,15 @@ class SwitchScan:
         """Move the focus to what is marked."""
         stops = self.stops(scene, canvas)
         stop, form = stops[self.index % len(stops)] if stops else None, _form_of(scene)
-        if stop and stop.widget and form and not form.typing:
+        if stop and form and stop.widget in form.widgets and not form.typing:
             form.focus(stop.widget)
             if isinstance(stop.widget, ListRow) and self._since == 0:
                 stop.widget.choose(stop.row)
 
     def _choose(self, scene: Scene, stop: Stop) -> Transition | None:
         widget, form = stop.widget, _form_of(scene)
-        if widget is None or form is None:
-            return stop.hint.run() if stop.hint and stop.hint.run else None
+        if form is None or widget not in form.widgets:
+            return widget.press()
         form.focus(widget)
         if not widget.by_arrows:
             return form.confirm(pointed=False)
@@ -158,10 +154,10 @@ def _form_of(scene: Scene) -> Form | None:
 def _stops_of(widget: Widget) -> list[Stop]:
     box = pygame.FRect(widget.box)
     if not isinstance(widget, ListRow):
-        return [Stop(box, widget=widget)]
+        return [Stop(box, widget)]
     seen = range(widget.first, min(len(widget.rows), widget.first + widget.room))
     pitch = widget.baseline(1) - widget.baseline(0)
     return [
-        Stop(pygame.FRect(box.left, box.top + number * pitch, box.width, pitch), widget=widget, row=row)
+        Stop(pygame.FRect(box.left, box.top + number * pitch, box.width, pitch), widget, row)
         for number, row in enumerate(seen)
     ]

@@ -71,7 +71,7 @@ def assert_same(world, alone, rows):
         assert ours.tobytes() == theirs.tobytes(), name
     if alone.contacts and len(rows) == 1:
         mine = np.flatnonzero(world.contacts.world == rows[0])
-        for name in ("pair", "impulse", "approach"):
+        for name in ("shape", "impulse", "approach"):
             assert np.array_equal(getattr(world.contacts, name)[mine], getattr(alone.contacts, name)), name
 
 

@@ -42,7 +42,7 @@ def contacts(points, feature, impulse=(0.0, 0.0, 0.0), normal=UP, pair=3, world=
         valid=np.array([[point is not None for point in points]]),
         feature=np.array([feature]),
         world=np.array([world]),
-        pair=np.array([pair]),
+        shape=np.array([[0, pair]]),
         body=np.array([[0, 1]]),
         friction=np.ones(1),
         restitution=np.zeros(1),

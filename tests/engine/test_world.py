@@ -1,5 +1,6 @@
 """What a world promises besides physics: handles, masks, groups, refusals."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -160,10 +161,13 @@ def test_no_setter_takes_what_makes_no_sense():
         "whole number of iterations, at least 1, not nan": lambda: World(iterations=nan),
         "at least one shape": lambda: World().add([], (0, 0)),
         "batch": lambda: World(batch=0),
-        "inverse_mass": lambda: setattr(params, "inverse_mass", [[nan, nan, 1.0]]),
-        "linear_drag": lambda: setattr(params, "linear_drag", [[-1.0, 0.0, 0.0]]),
-        "quadratic_drag must be of shape": lambda: setattr(params, "quadratic_drag", np.zeros((2, 2, 3))),
-        "restitution": lambda: setattr(params, "restitution", [1.5]),
+        "inverse_mass": lambda: replace(params, inverse_mass=np.array([[nan, nan, 1.0]])),
+        "linear_drag": lambda: replace(params, linear_drag=np.array([[-1.0, 0.0, 0.0]])),
+        "quadratic_drag must be of shape": lambda: replace(params, quadratic_drag=np.zeros((2, 2, 3))),
+        "restitution": lambda: replace(params, restitution=np.array([1.5])),
+        "of 1 bodies in 2 worlds": lambda: setattr(
+            world, "params", replace(params, quadratic_drag=np.zeros((3, 1, 3)))
+        ),
         "read-only": lambda: params.friction.fill(nan),
     }
     for reason, change in cases.items():
@@ -181,14 +185,15 @@ def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
     slow, other = world.add(Circle(0.5), (0, 0)), world.add(Circle(0.5), (9, 0))
     slow.velocity = other.velocity = (4.0, 0.0)
     advance(world, 1)
-    world.params.quadratic_drag = np.array([[1e9, 1e9, 0.0], [0.0, 0.0, 0.0]])
+    drag = np.array([[1e9, 1e9, 0.0], [0.0, 0.0, 0.0]])
+    world.params = replace(world.params, quadratic_drag=drag)
     advance(world, 1)
     assert slow.velocity[0, 0] == pytest.approx(0.0, abs=1e-3)
     assert other.velocity[0, 0] == 4.0
     pair = World(gravity=(0.0, 0.0), batch=2)
     for x in (0.0, 4.0, 8.0):
         pair.add(BOX, (x, 0.0), static=x == 4.0).velocity = (0.0, 2.0) if x != 4.0 else (0.0, 0.0)
-    pair.params.quadratic_drag = np.zeros((2, 3, 3))
+    pair.params = replace(pair.params, quadratic_drag=np.zeros((2, 3, 3)))
     advance(pair, 1)
     pair.params.quadratic_drag[1, 2] = 1e9  # an air of each world's own may be written into
     advance(pair, 1)
@@ -196,7 +201,7 @@ def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
     floored = floor()
     box = floored.add(BOX, (0, 0.5))
     for rubs in (1.0, 0.0):
-        floored.params.friction = [rubs, rubs]
+        floored.params = replace(floored.params, friction=np.array([rubs, rubs]))
         box.velocity = (1.0, 0.0)
         advance(floored, 60)
         assert box.velocity[0, 0] == pytest.approx(1.0 - rubs, abs=1e-3)

@@ -70,7 +70,7 @@ def trained(driver: Driver) -> None:
 def rewound(driver: Driver) -> None:
     """Train landers, with earlier runs beside them, and go back to the middle of the run."""
     trained(driver)
-    run, rewind = driver.top.run, driver.top.rewind
+    run, rewind = driver.top.run, driver.top.view.rewind
     for _ in range(5):
         put_beside(run.earlier, texts.TRAIN_NAME.format(preset=len(run.earlier)), run.history.copy())
     driver.frames(20)
@@ -84,10 +84,14 @@ def taught_to_read(driver: Driver) -> None:
     learn(driver, run, DIGITS, lambda: run.confusion and len(run.history))
 
 
+def knobs_listed(driver: Driver) -> None:
+    driver.top.knobs.open()
+
+
 def listed(driver: Driver) -> None:
     """Open the list of sabotages."""
     driver.top.knobs.set_config(LANDERS, 3)
-    driver.top.laboratory.open()
+    driver.top.view.laboratory.open()
     driver.frames(2)
 
 
@@ -202,7 +206,8 @@ STATES = [
     Stop("the tutorial", settings={"tutored": False}),
     Stop("error"),
     Stop("MenuScene", "a message", noted),
-    Stop("TrainScene", "all knobs", settings={"opened": "charts knobs more"}),
+    Stop("TrainScene", "all choices", settings={"opened": "charts more"}),
+    Stop("TrainScene", "all knobs", knobs_listed),
     Stop("TrainScene", "the laboratory", listed),
     Stop("TrainScene", "a guess", asked),
     Stop("TrainScene", "training", trained),
@@ -282,10 +287,6 @@ class Walk:
         driver.frames(3)
         page = self._written.turn(driver.app.canvas)
         driver.app.draw()
-        message = driver.app.notes.text
-        if page.notes and page.notes[-1].text in message:  # for five seconds its panel lies over what stands there
-            cover = page.panels[-1]
-            page.notes = [note for note in page.notes if note.text in message or not cover.colliderect(note.box)]
         for note in page.notes:
             if note.code:
                 continue

@@ -9,7 +9,7 @@ import numpy as np
 import pygame
 
 from ai.digits.classifier import DIGITS, DigitClassifier
-from ai.digits.mnist import MnistError, bright
+from ai.digits.mnist import Labels, MnistError, Pixels, bright
 from ai.explain.inspection import traces
 from ai.nn import SGD, Array, FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from game.core import texts
@@ -36,7 +36,7 @@ _ANSWERS: Final = 0.69  # left end of the answers
 _LINKS: Final = 24  # connections that are drawn from layer to layer: those most to blame
 
 
-class BackwardsChapter(Chapter):
+class Blame:
     """The shipped network of fully connected layers, a copy of it that learns, and one digit that it misreads.
 
     Attributes:
@@ -44,71 +44,56 @@ class BackwardsChapter(Chapter):
         label: the digit that it is.
         reached: how many layers the error has reached: 0 none, 1 the answers, 4 the image.
         steps: learning steps taken on this digit.
+        moved: how many numbers the last one has changed.
         blames: derivative of the cost by the image, by each unit's answer, and by the ten answers.
         links: for each layer, the weights that are most to blame.
 
     """
 
-    key, door, shape, explains = "backwards", Route("digits"), 0.42, True
+    def __init__(self, shipped: DigitClassifier, pixels: Pixels, labels: Labels) -> None:
+        self._shipped, self._pixels, self._labels = shipped, pixels, labels
+        read = shipped.predict(bright(pixels[:SEARCHED])).argmax(axis=1)
+        self.misread = np.flatnonzero(read != labels[:SEARCHED]).tolist()
+        self.begin(0)
 
-    def __init__(self, context: Context) -> None:
-        super().__init__(context)
-        self._cache = PaintCache(most=6)
-        try:
-            self._shipped = classifier_in(context.models_dir / "digits" / _MODEL)
-            self._pixels, self._labels = mnist_test(context.assets_dir)
-        except (ModelFormatError, MnistError) as error:
-            self.problem = str(error)
-            return
-        read = self._shipped.predict(bright(self._pixels[:SEARCHED])).argmax(axis=1)
-        self.misread = np.flatnonzero(read != self._labels[:SEARCHED]).tolist()
-        self.restart()
-
-    def restart(self) -> None:
-        self._digit, self.tried = 0, False
-        self._begin()
-
-    def _begin(self) -> None:
-        self.chosen = self.misread[self._digit % len(self.misread)]
+    def begin(self, digit: int) -> None:
+        """Begin with one of the digits that the shipped network misreads."""
+        self._digit = digit
+        self.chosen = self.misread[digit % len(self.misread)]
         self.classifier = DigitClassifier(self._shipped.network.copy())
         self.label = int(self._labels[self.chosen])
-        self._image = bright(self._pixels[self.chosen : self.chosen + 1])
+        self.image = bright(self._pixels[self.chosen : self.chosen + 1])
         self._target = np.eye(DIGITS, dtype=np.float32)[[self.label]]
         self.reached = self.steps = self.moved = 0
         self._look()
-        self.before, self.read_as, self._right_before = self.odds[self.label], int(self.odds.argmax()), self._right()
+        self.before, self.read_as, self.right_before = self.odds[self.label], int(self.odds.argmax()), self.right()
+
+    def another(self) -> None:
+        """Go on to the next digit."""
+        self.begin(self._digit + 1)
 
     @property
     def network(self) -> NeuralNetwork:
         """The network that learns."""
         return self.classifier.network
 
-    def controls(self, column: Column) -> None:
-        column.button(texts.LEARN_BACKWARDS_BACK if self.reached < 4 else texts.LEARN_BACKWARDS_STEP, self.go_on)
-        column.button(texts.LEARN_BACKWARDS_OTHER, self.another)
-
-    def go_on(self) -> None:
-        """Send the error back one layer, or take a learning step once it has reached the image."""
-        self.changed = True
+    def step(self) -> bool:
+        """Send the error back one layer, or learn once it has reached the image; return whether it has learned."""
         if self.reached < 4:
             self.reached += 1
-        elif self.steps < MOST_STEPS:
-            before = self.network.values.copy()
-            self.network.train_batch(self.classifier.shaped(self._image), self._target, SGD(RATE))
-            self.moved = int((self.network.values != before).sum())
-            self.steps += 1
-            self._look()
-            self.found()
-
-    def another(self) -> None:
-        """Show the next digit that the shipped network misreads."""
-        self._digit += 1
-        self.changed, self.tried = True, False
-        self._begin()
+            return False
+        if self.steps >= MOST_STEPS:
+            return False
+        before = self.network.values.copy()
+        self.network.train_batch(self.classifier.shaped(self.image), self._target, SGD(RATE))
+        self.moved = int((self.network.values != before).sum())
+        self.steps += 1
+        self._look()
+        return True
 
     def _look(self) -> None:
         """Read the digit, and send the error back through all layers, as a learning step does."""
-        network, shaped = self.network, self.classifier.shaped(self._image)
+        network, shaped = self.network, self.classifier.shaped(self.image)
         self.answers = network.forward_propagate(shaped)[0].copy()
         self.odds = self.classifier.probabilities(self.answers[None])[0]
         self.units = [*(stage[0] for stage in traces(network, shaped)[1:3]), self.answers]
@@ -121,45 +106,85 @@ class BackwardsChapter(Chapter):
         self.blames: list[Array] = [pixels, *hidden, error[0]]
         self.links = [_steepest(layer.parameters[0].gradient) for layer in layers]
 
-    def _right(self) -> int:
+    def right(self) -> int:
         """Return how many of 500 other digits it reads right."""
         read = self.classifier.predict(bright(self._pixels[OTHERS])).argmax(axis=1)
         return int((read == self._labels[OTHERS]).sum())
-
-    def unit(self, stage: int, unit: int) -> str:
-        """Return what a unit answered, and its share of the blame once that has come so far."""
-        answer = decimal(float(self.units[stage - 1][unit]), 2, "+")
-        name = texts.LEARN_BACKWARDS_UNITS[stage - 1].format(unit=unit + (stage < 3), answer=answer)
-        if self.reached < 4 - stage:
-            return name
-        blame = float(self.blames[stage][unit])
-        kind = "less" if blame > 0 else "more" if blame < 0 else "none"
-        return f"{name} {texts.LEARN_BACKWARDS_BLAME[kind].format(blame=decimal(blame, 3, '+'))}"
-
-    def why(self) -> str:
-        return texts.LEARN_BACKWARDS_WHY.format(
-            label=self.label, read=self.read_as, before=percent(self.before), after=percent(self.odds[self.label]),
-            steps=self.steps, moved=self.moved, share=percent(self.moved / self.network.values.size),
-            count=self.network.values.size, right=self._right_before, now=self._right(),
-        )  # fmt: skip
 
     def verdict(self) -> int | None:
         """Return the answer that the share of numbers which the last step moved is next to."""
         share = self.moved / self.network.values.size
         return int(np.argmin(np.abs(np.array(ANSWERS) - share))) if self.steps else None
 
+
+class BackwardsChapter(Chapter):
+    """The digit, the network's layers, and the blame on its way back through them."""
+
+    key, door, shape, explains = "backwards", Route("digits"), 0.42, True
+    model: Blame
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._cache = PaintCache(most=6)
+        try:
+            shipped = classifier_in(context.models_dir / "digits" / _MODEL)
+            self.model = Blame(shipped, *mnist_test(context.assets_dir))
+        except (ModelFormatError, MnistError) as error:
+            self.problem = str(error)
+
+    def restart(self) -> None:
+        self.model.begin(0)
+        self.tried = False
+
+    def controls(self, column: Column) -> None:
+        back = self.model.reached < 4
+        column.button(texts.LEARN_BACKWARDS_BACK if back else texts.LEARN_BACKWARDS_STEP, self.go_on)
+        column.button(texts.LEARN_BACKWARDS_OTHER, self.another)
+
+    def go_on(self) -> None:
+        """Send the error back one layer, or take a learning step."""
+        self.changed = True
+        if self.model.step():
+            self.found()
+
+    def another(self) -> None:
+        """Show the next digit that the shipped network misreads."""
+        self.model.another()
+        self.changed, self.tried = True, False
+
+    def verdict(self) -> int | None:
+        return self.model.verdict()
+
+    def unit(self, stage: int, unit: int) -> str:
+        """Return what a unit answered, and its share of the blame once that has come so far."""
+        answer = decimal(float(self.model.units[stage - 1][unit]), 2, "+")
+        name = texts.LEARN_BACKWARDS_UNITS[stage - 1].format(unit=unit + (stage < 3), answer=answer)
+        if self.model.reached < 4 - stage:
+            return name
+        blame = float(self.model.blames[stage][unit])
+        kind = "less" if blame > 0 else "more" if blame < 0 else "none"
+        return f"{name} {texts.LEARN_BACKWARDS_BLAME[kind].format(blame=decimal(blame, 3, '+'))}"
+
+    def why(self) -> str:
+        model = self.model
+        return texts.LEARN_BACKWARDS_WHY.format(
+            label=model.label, read=model.read_as, before=percent(model.before), after=percent(model.odds[model.label]),
+            steps=model.steps, moved=model.moved, share=percent(model.moved / model.network.values.size),
+            count=model.network.values.size, right=model.right_before, now=model.right(),
+        )  # fmt: skip
+
     def below(self, column: Column) -> None:
-        column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)
+        column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.model.reached > 0], size=SMALL, colour=MUTE)
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        for stage, links in enumerate(self.links):
-            for start, end, slope in links if self.reached >= 4 - stage else ():
+        for stage, links in enumerate(self.model.links):
+            for start, end, slope in links if self.model.reached >= 4 - stage else ():
                 line = _spot(box, stage, start).center, _spot(box, stage + 1, end).midleft
                 canvas.line(*line, NET if slope < 0 else canvas.palette.warn, 1, 0.35)
         for stage, (_, _, columns, rows) in enumerate(_BOXES):
             area = _spot(box, stage, 0).union(_spot(box, stage, columns * rows - 1))
-            blamed = self.reached >= 4 - stage
-            shows = (stage, blamed, self.steps, self.chosen)
+            blamed = self.model.reached >= 4 - stage
+            shows = (stage, blamed, self.model.steps, self.model.chosen)
             self._cache.draw(canvas, area, shows, partial(self._paint, stage, blamed, columns))
             canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=CAPTION, colour=MUTE)
             for unit in range(columns * rows if stage else 0):
@@ -171,21 +196,27 @@ class BackwardsChapter(Chapter):
             self._draw_answer(canvas, _spot(box, len(_BOXES), digit), digit)
 
     def _paint(self, stage: int, blamed: bool, columns: int, sheet: Canvas) -> None:
-        values = self.blames[stage] if blamed else self._image[0] if stage == 0 else np.abs(self.units[stage - 1])
+        values = (
+            self.model.blames[stage]
+            if blamed
+            else self.model.image[0]
+            if stage == 0
+            else np.abs(self.model.units[stage - 1])
+        )
         shown = -values / max(float(np.abs(values).max()), 1e-9) if blamed else values
         shades = SIGNED if blamed else GREY
         sheet.surface.blit(picture(shown.reshape(-1, columns), sheet.size, shades), (0, 0))
 
     def _draw_answer(self, canvas: Canvas, box: pygame.FRect, digit: int) -> None:
         """Draw how likely a digit is said to be, and which way its answer should go."""
-        odds, blame, y = float(self.odds[digit]), float(self.blames[-1][digit]), box.centery
-        colour = canvas.palette.good if digit == self.label else INK
+        odds, blame, y = float(self.model.odds[digit]), float(self.model.blames[-1][digit]), box.centery
+        colour = canvas.palette.good if digit == self.model.label else INK
         canvas.text(str(digit), (box.left + 6, y + 5), size=SMALL, colour=colour, weight="medium")
         canvas.bar((box.left + 24, y - 2, max(box.width - 100, 20), 4), odds, NET)
         canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
         canvas.explain(box, self.unit(len(_BOXES), digit))
-        if self.reached:
-            size = 4 + 12 * abs(blame) / max(float(np.abs(self.blames[-1]).max()), 1e-9)
+        if self.model.reached:
+            size = 4 + 12 * abs(blame) / max(float(np.abs(self.model.blames[-1]).max()), 1e-9)
             tint = NET if blame < 0 else canvas.palette.warn
             canvas.marker("triangle" if blame < 0 else "triangle_down", (box.right - 10, y), size, tint)
 

@@ -53,45 +53,32 @@ class Came(NamedTuple):
     landed: bool
 
 
-class ChoiceChapter(Chapter):
-    """A frozen moment; the player chooses its first action, and the shipped network flies on, paid as in training.
+class Moment:
+    """A frozen moment; a first action is chosen, and the shipped network flies on, paid as in training.
 
     Attributes:
+        number: the moment, of `MOMENTS`.
         values: the network's values at the moment, in points, one an action.
         first: the action that was chosen; None before.
         came: pay since the moment, later pay counted less.
+        path: where the lander was at the moment, and after each decision since.
         results: what came of each action that was tried from this moment.
 
     """
 
-    key, door, shape = "choice", Route("watch"), 0.3
-    first: int | None = None
+    first: int | None
 
-    def __init__(self, context: Context) -> None:
-        super().__init__(context)
-        network = networks.load(networks.DEFAULT, context.models_dir / networks.LANDER / networks.DEFAULT)
+    def __init__(self, agent: DeepQAgent) -> None:
+        self.agent, self.number = agent, 0
         self.results: dict[int, Came] = {}
-        if isinstance(network.policy, DeepQAgent):
-            self.agent = network.policy
-            self.restart()
-        else:
-            self.problem = network.problem
+        self.freeze(0)
 
-    def restart(self) -> None:
-        self._number = -1
-        self.turn()
-
-    def turn(self) -> None:
-        """Go to the next moment."""
-        self._number = (self._number + 1) % len(MOMENTS)
-        self.tried, self.changed = False, True
-        self.results.clear()
-        self._freeze()
-
-    def _freeze(self) -> None:
-        """Fly to the moment, and stop there."""
-        self.first, self.came, self._steps = None, 0.0, 0
-        seed, spawn, decisions = MOMENTS[self._number]
+    def freeze(self, number: int) -> None:
+        """Fly to a moment, and stop there; one that is new has no results."""
+        if number != self.number:
+            self.results.clear()
+        self.number, self.first, self.came, self._steps = number, None, 0.0, 0
+        seed, spawn, decisions = MOMENTS[number]
         self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=Config.of(self.agent).reward_weights)
         self.env.reset()
         for step in range(DECISION_STEPS * decisions):
@@ -102,7 +89,7 @@ class ChoiceChapter(Chapter):
         assert self.decision.points is not None
         self.values: Floats = self.decision.points[0].copy()
         self.best, self.worst = int(self.values.argmax()), int(self.values.argmin())
-        self._lander, self._path = DrawnLander(self.env), [self.env.position[0].copy()]
+        self.path = [self.env.position[0].copy()]
 
     def _decide(self) -> None:
         self.decision: Decision = self.agent.decide(self.env.observe(), held=self.env.actions)
@@ -114,35 +101,34 @@ class ChoiceChapter(Chapter):
 
     @property
     def running(self) -> bool:
+        """Whether it goes on."""
         return self.first is not None and not self.over
 
-    def controls(self, column: Column) -> None:
-        for action, name in enumerate(ACTION_NAMES):
-            colour, press = NET if action == self.best else INK, partial(self.begin_with, action)
-            column.button(capital(texts.said(name)), press, size=SMALL + 1, colour=colour)
-        column.button(texts.LEARN_CHOICE_NEXT, self.turn)
+    @property
+    def landed(self) -> bool:
+        """Whether it has landed."""
+        return bool(self.env.outcome[0] == Outcome.LANDED)
 
     def begin_with(self, action: int) -> None:
         """Go back to the moment, and let the flight begin with an action for one decision."""
-        self._freeze()
+        self.freeze(self.number)
         self.first, self.decision = action, replace(self.decision, action=np.array([action]))
-        self.changed = True
 
-    def update(self) -> None:
-        if self.first is None or not self.running:
-            return
+    def step(self) -> bool:
+        """Advance by 1/60 s, if a flight goes on; return whether it has come to its end."""
+        if (first := self.first) is None or self.over:
+            return False
         if self._steps % DECISION_STEPS == 0 and self._steps:
             self._decide()
         pay = float(self.env.step(self.decision.action).reward[0])
         self.came += self.agent.config.discount ** (self._steps // DECISION_STEPS) * pay
         self._steps += 1
-        self._lander.follow()
         if self._steps % DECISION_STEPS == 0:
-            self._path.append(self.env.position[0].copy())
-        if self.over:
-            self.results[self.first] = Came(self.came, bool(self.env.outcome[0] == Outcome.LANDED))
-            self.changed = True
-            self.found()
+            self.path.append(self.env.position[0].copy())
+        ended = bool(self.env.outcome[0] != Outcome.FLYING)
+        if ended:
+            self.results[first] = Came(self.came, self.landed)
+        return ended
 
     def verdict(self) -> int | None:
         """Return what came of the lowest value; None before it and the highest were flown, and where that was lost."""
@@ -151,17 +137,68 @@ class ChoiceChapter(Chapter):
             return None
         return 0 if not worst.landed else 1 if best.points - worst.points <= _ALIKE else 2
 
+
+class ChoiceChapter(Chapter):
+    """Moments, the actions to begin with, and a table of what each was said to bring, and what it brought."""
+
+    key, door, shape = "choice", Route("watch"), 0.3
+    model: Moment
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        network = networks.load(networks.DEFAULT, context.models_dir / networks.LANDER / networks.DEFAULT)
+        if isinstance(network.policy, DeepQAgent):
+            self.model = Moment(network.policy)
+            self._lander = DrawnLander(self.model.env)
+        else:
+            self.problem = network.problem
+
+    def restart(self) -> None:
+        self.model.results.clear()
+        self._show(0)
+
+    def turn(self) -> None:
+        """Go to the next moment."""
+        self._show((self.model.number + 1) % len(MOMENTS))
+
+    def _show(self, number: int) -> None:
+        self.model.freeze(number)
+        self._lander = DrawnLander(self.model.env)
+        self.tried, self.changed = False, True
+
+    def controls(self, column: Column) -> None:
+        for action, name in enumerate(ACTION_NAMES):
+            colour, press = NET if action == self.model.best else INK, partial(self.begin_with, action)
+            column.button(capital(texts.said(name)), press, size=SMALL + 1, colour=colour)
+        column.button(texts.LEARN_CHOICE_NEXT, self.turn)
+
+    def begin_with(self, action: int) -> None:
+        """Let a flight begin with an action."""
+        self.model.begin_with(action)
+        self._lander, self.changed = DrawnLander(self.model.env), True
+
+    def update(self) -> None:
+        flies = self.model.running
+        if self.model.step():
+            self.changed = True
+            self.found()
+        if flies:
+            self._lander.follow()
+
+    def verdict(self) -> int | None:
+        return self.model.verdict()
+
     def why(self) -> str:
         sentences = " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
                 action=texts.said(ACTION_NAMES[action]),
-                value=points(float(self.values[action]), 1),
+                value=points(float(self.model.values[action]), 1),
                 came=points(came.points, 1),
             )
-            for action, came in self.results.items()
+            for action, came in self.model.results.items()
         )
-        best = self.results.get(self.best)
-        surprises = best is not None and best.points < max(came.points for came in self.results.values())
+        best = self.model.results.get(self.model.best)
+        surprises = best is not None and best.points < max(came.points for came in self.model.results.values())
         return f"{sentences} {texts.LEARN_CHOICE_SURPRISE}" if surprises else sentences
 
     def below(self, column: Column) -> None:
@@ -169,32 +206,32 @@ class ChoiceChapter(Chapter):
 
     def _lines(self) -> Sequence[Line]:
         """Return each action with its value, and what came of it; bars begin at 0, on one scale for the moment."""
-        came = {action: each.points for action, each in self.results.items()}
-        shown = [*self.values.tolist(), *came.values()]
-        high, lines = _BAR * math.ceil(_ROOM * max(float(np.abs(self.values).max()), 1.0) / _BAR), list[Line]()
+        came = {action: each.points for action, each in self.model.results.items()}
+        shown = [*self.model.values.tolist(), *came.values()]
+        high, lines = _BAR * math.ceil(_ROOM * max(float(np.abs(self.model.values).max()), 1.0) / _BAR), list[Line]()
         low = -high if min(shown) < 0 else 0.0
-        for action, value in enumerate(self.values.tolist()):
+        for action, value in enumerate(self.model.values.tolist()):
             brought = points(came[action], 1) if action in came else ""
             bars = [from_zero(each, low, high) for each in (value, came.get(action, 0.0))]
             cells = (texts.said(ACTION_NAMES[action]), points(value, 1), brought)
-            lines.append(Line(cells, lit=action == self.best, bars=bars))
+            lines.append(Line(cells, lit=action == self.model.best, bars=bars))
         return lines
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         foot = PARAMS.ground - _BELOW
-        high = max(_METRES * box.height / box.width, max(y for _, y in self._path) + _ABOVE - foot)
+        high = max(_METRES * box.height / box.width, max(y for _, y in self.model.path) + _ABOVE - foot)
         view = view_in(box, (0.0, foot + high / 2), high * box.width / box.height, canvas.scale)
         with inside(canvas, box):
             draw_ground(canvas, box, view)
-            for a, b in pairwise(view.points(self._path).tolist()):
+            for a, b in pairwise(view.points(self.model.path).tolist()):
                 canvas.line(a, b, mix(NIGHT1, NET, 0.6), 1.5)
-            self._lander.draw(canvas, view, alpha if self.running else 1.0)
-            if self.first is None:
-                start = self.env.position[0]
-                a, b = view.points([start, start + self.env.velocity[0]]).tolist()
+            self._lander.draw(canvas, view, alpha if self.model.running else 1.0)
+            if self.model.first is None:
+                start = self.model.env.position[0]
+                a, b = view.points([start, start + self.model.env.velocity[0]]).tolist()
                 canvas.line(a, b, HUMAN, 2)
-        number = texts.LEARN_CHOICE_NUMBER.format(number=self._number + 1, count=len(MOMENTS))
-        landed = "landed" if self.over and self.env.outcome[0] == Outcome.LANDED else "lost"
-        end = texts.LEARN_CHOICE_ENDS["still" if self.first is None else landed if self.over else "flying"]
+        number = texts.LEARN_CHOICE_NUMBER.format(number=self.model.number + 1, count=len(MOMENTS))
+        landed = "landed" if self.model.landed else "lost"
+        end = texts.LEARN_CHOICE_ENDS["still" if self.model.first is None else landed if self.model.over else "flying"]
         canvas.text(number, (box.left, box.top + 14), size=SMALL, colour=MUTE)
         canvas.text(end, (box.right, box.top + 14), size=SMALL, colour=MUTE, align="right")

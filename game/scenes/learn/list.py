@@ -6,7 +6,7 @@ from contextlib import suppress
 from functools import partial
 from typing import Final
 
-from ai.pilots.shelf import Shelf
+from ai.pilots.folder import PilotFolder
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
@@ -87,7 +87,7 @@ class LearnScene(PanelScene):
         self.own = done_with_own(self.context)
         doors: dict[str, OnPress] = {
             "train": partial(push, "train"), "land": partial(push, "runs"), "hand": partial(push, "play"),
-            "file": lambda: push("pilots", partial(own_pilots.take, self.context)),
+            "file": partial(push, "runs"),
         }  # fmt: skip
         column.caption(texts.LEARN_OWN_TITLE)
         for name, press in doors.items():
@@ -119,7 +119,7 @@ def done_with_own(context: Context) -> dict[str, bool]:
     own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
     pilots = []
     with suppress(OSError):
-        pilots = Shelf(context.user_dir).measured()
+        pilots = PilotFolder(context.user_dir).measured()
     return {
         "train": bool(runs),
         "land": any(run.success for run in (*runs, library.rescued()) if run),

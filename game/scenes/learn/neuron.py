@@ -40,34 +40,33 @@ _MOST: Final = 6.0
 _NEURON: Final = 0.3  # share of the picture's height for the neuron
 
 
-class NeuronChapter(Chapter):
+class Steering:
     """One fully connected layer of three inputs and one output, tanh, decides: left jet, none, right jet.
 
     Attributes:
         seconds: how long the present flight has been upright and in sight.
         sensed: what the neuron was given for its latest decision, (1, 3).
         output: what it answered, from -1 to 1.
+        steer: what that means: 1 turns left, 2 right, 0 neither.
         end: how the present flight ended: "fell" over, or "drifted" out of sight; empty while it flies.
+        age: physics steps of the present flight.
         best: the longest such time, with the weights of then.
 
     """
 
-    key, door = "neuron", Route("watch")
-
-    def __init__(self, context: Context) -> None:
-        super().__init__(context)
+    def __init__(self) -> None:
         self.layer = FullyConnectedLayer(len(SENSES), 1)
         self.network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(self.layer)
         self.network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
         self.env = LanderEnv(1, seed=0, spawn="fixed", frame_skip=1, limits=replace(LIMITS, time=1e9))
         self.env.reset()
-        self._lander = DrawnLander(self.env)
         self.restart()
 
     def restart(self) -> None:
+        """Begin anew, without weights."""
         self.network.values[:] = 0.0
         self.best: tuple[float, tuple[float, ...]] = (0.0, (0.0, 0.0, 0.0))
-        self._flights, self.tried = 0, False
+        self._flights = 0
         self._begin()
 
     @property
@@ -75,23 +74,16 @@ class NeuronChapter(Chapter):
         """The three weights."""
         return tuple(self.layer.weights[:, 0].tolist())
 
-    def controls(self, column: Column) -> None:
-        for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
-            column.slider(name, self.weights[number], (-_MOST, _MOST), partial(self.set, number), step=1,
-                          figure=lambda weight: decimal(weight, 0, "+"))  # fmt: skip
-        column.button(texts.LEARN_NEURON_PUSH, self.push)
-        column.button(texts.LEARN_NEURON_HINT, self.hint)
+    @property
+    def products(self) -> Floats:
+        """What was sensed, times the weights, (3,)."""
+        products: Floats = self.sensed[0] * self.layer.weights[:, 0]
+        return products
 
     def set(self, number: int, weight: float) -> None:
         """Set one weight."""
         self.layer.weights[number, 0] = weight
         self.seconds = 0.0
-
-    def hint(self) -> None:
-        """Set weights that fly."""
-        for number, weight in enumerate(HINT):
-            self.set(number, weight)
-        self.changed = True
 
     def push(self) -> None:
         """Push the lander, sideways and into a spin, to one side and then the other."""
@@ -101,12 +93,24 @@ class NeuronChapter(Chapter):
         body.set(velocity=body.velocity + np.array([side * _SHOVE[0], 0.0]), mask=flying)
         body.set(angular_velocity=body.angular_velocity - side * _SHOVE[1], mask=flying)
 
+    def step(self) -> bool:
+        """Advance by 1/60 s; return whether this has shown something."""
+        if self._over:
+            self._over -= 1
+            if not self._over:
+                self._begin()
+            return False
+        if self.age % DECISION == 0:
+            self._decide()
+        self.env.fly(self.action)
+        self.age += 1
+        return self._judge()
+
     def _begin(self) -> None:
         lean = _LEANS[self._flights % len(_LEANS)]
         self._flights += 1
         self.env.place(np.array([True]), np.array([[0.0, _HEIGHT, -_DRIFT * np.sign(lean), 0.0, lean, 0.0]]))
-        self._lander.begin()
-        self._age = self._pushes = self._over = 0
+        self.age = self._pushes = self._over = 0
         self.seconds, self.end = 0.0, ""
         self._decide()
 
@@ -118,20 +122,7 @@ class NeuronChapter(Chapter):
         sinking = self.env.velocity[0, 1] + 0.5 * (self.env.position[0, 1] - _HEIGHT) < 0
         self.action = np.array([3 * int(sinking) + self.steer])
 
-    def update(self) -> None:
-        if self._over:
-            self._over -= 1
-            if not self._over:
-                self._begin()
-            return
-        if self._age % DECISION == 0:
-            self._decide()
-        self.env.fly(self.action)
-        self._lander.follow()
-        self._age += 1
-        self._judge()
-
-    def _judge(self) -> None:
+    def _judge(self) -> bool:
         before, self.seconds = self.seconds, self.seconds + DT
         in_sight = abs(self.env.position[0, 0]) < _SIGHT
         fallen = self.env.outcome[0] != Outcome.FLYING or self.env.tilt[0] > _FALLEN
@@ -139,25 +130,64 @@ class NeuronChapter(Chapter):
             self.best = (self.seconds, self.weights)
         if fallen or not in_sight:
             self.end, self._over = ("fell" if fallen else "drifted"), _REST
-        if any(self.weights) and (self.end or before < GOAL <= self.seconds):
-            self.found()
-
-    def why(self) -> str:
-        seconds, weights = self.best
-        tilt, spin, speed = (decimal(weight, 0, "+") for weight in weights)
-        template = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
-        return template.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
+        return any(self.weights) and bool(self.end or before < GOAL <= self.seconds)
 
     def verdict(self) -> int | None:
         """Return what the neuron that stayed in sight for long enough has sensed beside the tilt."""
         seconds, (_, spin, speed) = self.best
         return None if seconds < GOAL else 2 if speed else 1 if spin else 0
 
+
+class NeuronChapter(Chapter):
+    """The neuron's three weights, its lander, and what it adds up."""
+
+    key, door = "neuron", Route("watch")
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.model = Steering()
+        self._lander = DrawnLander(self.model.env)
+
+    def restart(self) -> None:
+        self.model.restart()
+        self._lander.begin()
+        self.tried = False
+
+    def controls(self, column: Column) -> None:
+        for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
+            column.slider(name, self.model.weights[number], (-_MOST, _MOST), partial(self.model.set, number), step=1,
+                          figure=lambda weight: decimal(weight, 0, "+"))  # fmt: skip
+        column.button(texts.LEARN_NEURON_PUSH, self.model.push)
+        column.button(texts.LEARN_NEURON_HINT, self.hint)
+
+    def hint(self) -> None:
+        """Set weights that fly."""
+        for number, weight in enumerate(HINT):
+            self.model.set(number, weight)
+        self.changed = True
+
+    def update(self) -> None:
+        if self.model.step():
+            self.found()
+        if self.model.age:
+            self._lander.follow()
+        else:
+            self._lander.begin()
+
+    def verdict(self) -> int | None:
+        return self.model.verdict()
+
+    def why(self) -> str:
+        seconds, weights = self.model.best
+        tilt, spin, speed = (decimal(weight, 0, "+") for weight in weights)
+        template = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
+        return template.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
+
     def code(self) -> Code:
-        inputs, weights = self.sensed[0], self.layer.weights[:, 0]
+        inputs, weights = self.model.sensed[0], self.model.weights
         total = " ".join(
             f"{decimal(value, 2, '+')}×{decimal(weight, 0)}"
-            for value, weight in zip(inputs.tolist(), weights.tolist(), strict=True)
+            for value, weight in zip(inputs.tolist(), weights, strict=True)
         )
         return Code(FullyConnectedLayer.predict, np.dot, total)
 
@@ -166,12 +196,9 @@ class NeuronChapter(Chapter):
         column.aside(f"{texts.LEARN_NEURON_FIRES.format(output=_FIRES)} {texts.LEARN_NEURON_RULE}")
 
     def _summed(self) -> str:
-        total, output = decimal(float(self._products().sum()), 2, "+"), decimal(self.output, 2, "+")
-        return texts.LEARN_NEURON_SUM.format(total=total, output=output, action=texts.LEARN_NEURON_ACTIONS[self.steer])
-
-    def _products(self) -> Floats:
-        products: Floats = self.sensed[0] * self.layer.weights[:, 0]
-        return products
+        model = self.model
+        total, output = decimal(float(model.products.sum()), 2, "+"), decimal(model.output, 2, "+")
+        return texts.LEARN_NEURON_SUM.format(total=total, output=output, action=texts.LEARN_NEURON_ACTIONS[model.steer])
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         world = pygame.FRect(box.left, box.top, box.width, (1 - _NEURON) * box.height)
@@ -181,8 +208,10 @@ class NeuronChapter(Chapter):
             canvas.line((world.left, y), (world.right, y), LINE)
             canvas.line((x, world.top), (x, world.bottom), LINE)
             self._lander.draw(canvas, view, alpha)
-        there = self.seconds >= GOAL
-        words = texts.LEARN_NEURON_FLIGHT[self.end or ("there" if there else "flies")].format(seconds=self.seconds)
+        there = self.model.seconds >= GOAL
+        words = texts.LEARN_NEURON_FLIGHT[self.model.end or ("there" if there else "flies")].format(
+            seconds=self.model.seconds
+        )
         colour = canvas.palette.good if there else MUTE
         canvas.text(words, (box.left + 4, box.top + 18), size=SMALL, colour=colour, tabular=True)
         self._draw_neuron(canvas, pygame.FRect(box.left, world.bottom, box.width, _NEURON * box.height))
@@ -191,17 +220,17 @@ class NeuronChapter(Chapter):
         """Draw what is sensed, times the weights, on lines as thick as the products, into the neuron."""
         neuron = (box.left + 0.8 * box.width, box.centery)
         for number, (name, product) in enumerate(
-            zip(texts.LEARN_NEURON_INPUTS, self._products().tolist(), strict=True)
+            zip(texts.LEARN_NEURON_INPUTS, self.model.products.tolist(), strict=True)
         ):
             y = box.top + box.height * (number + 0.6) / len(SENSES)
             words = texts.LEARN_NEURON_PRODUCT.format(
-                value=decimal(float(self.sensed[0, number]), 2, "+"),
-                weight=decimal(self.weights[number], 0, "+"),
+                value=decimal(float(self.model.sensed[0, number]), 2, "+"),
+                weight=decimal(self.model.weights[number], 0, "+"),
                 product=decimal(product, 2, "+"),
             )
             end = box.left + 0.6 * box.width
             canvas.text(name, (box.left + 4, y), size=SMALL, colour=MUTE, room=0.22 * box.width)
             canvas.text(words, (end, y), size=SMALL, align="right", tabular=True)
             canvas.line((end + 12, y - 4), neuron, NET, 1 + min(abs(product), 3.0), 0.6)
-        canvas.glow(neuron, 40, NET, abs(self.output))
-        canvas.dot(neuron, 16, NET, 0.25 + 0.75 * abs(self.output))
+        canvas.glow(neuron, 40, NET, abs(self.model.output))
+        canvas.dot(neuron, 16, NET, 0.25 + 0.75 * abs(self.model.output))

@@ -61,74 +61,62 @@ def _places() -> Array:
     return np.stack([across.ravel(), up.ravel()], axis=1).astype(np.float32)
 
 
-class PlaneChapter(Chapter):
-    """Training on points of two kinds; the plane's colour is what the network answers there.
+class Divided:
+    """Training on points of two kinds, and what the network answers on the whole plane.
 
     Attributes:
         units: hidden units of the network.
         network: the network that is trained.
+        right: number of points on the right side, when it was last asked.
+        planes: what its hidden units and its output say at every place, (units + 1, cells, cells).
+        version: counter of these answers.
         results: by number of hidden units, how many points were divided right at best.
 
     """
 
-    key, door = "plane", Route("train")
-
-    def __init__(self, context: Context) -> None:
-        super().__init__(context)
-        self._cache, self._places = PaintCache(most=2 * max(UNITS) + 4), _places()
+    def __init__(self) -> None:
+        self._places = _places()
         self.points, self.targets = examples(0)
         self.restart()
 
     def restart(self) -> None:
-        self.units, self._seed, self.tried = 0, 0, False
+        """Begin with no hidden units, and forget what was shown."""
+        self.units = self._seed = self.version = 0
         self.results: dict[int, int] = {}
-        self._version = 0
         self.begin()
 
     def begin(self) -> None:
         """Begin training from new first weights."""
         self.network, self._optimizer = network_of(self.units, self._seed), Adam(_RATE)
-        self.steps, self.cost = 0, float("nan")
+        self.steps = 0
         self._seed += 1
         self._look()
-
-    @property
-    def right(self) -> int:
-        """Number of points on the right side."""
-        return int(((self.network.predict(self.points) > 0) == (self.targets > 0)).sum())
-
-    def controls(self, column: Column) -> None:
-        column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), UNITS.index(self.units), self.choose)
-        column.button(texts.LEARN_PLANE_AGAIN, self.begin)
 
     def choose(self, index: int) -> None:
         """Train with another number of hidden units, an index into `UNITS`."""
         self.units = UNITS[index]
         self.begin()
 
-    def update(self) -> None:
-        if self.steps < STEPS:
-            self.cost = self.network.train_batch(self.points, self.targets, self._optimizer)
-            self.steps += 1
-            if self.steps % _EVERY == 0:
-                self._look()
-            if self.steps >= SPOKEN and self._shown > self.results.get(self.units, -1):
-                self.results[self.units] = self._shown
-                self.found()
+    def step(self) -> bool:
+        """Take a learning step, unless there were enough; return whether this has shown something."""
+        if self.steps >= STEPS:
+            return False
+        self.network.train_batch(self.points, self.targets, self._optimizer)
+        self.steps += 1
+        if self.steps % _EVERY == 0:
+            self._look()
+        if self.steps < SPOKEN or self.right <= self.results.get(self.units, -1):
+            return False
+        self.results[self.units] = self.right
+        return True
 
     def _look(self) -> None:
         """Ask the network, at every place of the plane, for what its hidden units and its output say."""
         stages = self.network.activations(self._places)
         hidden = stages[1] if self.units else np.empty((len(self._places), 0))
-        self._planes = np.concatenate([hidden, stages[-1]], axis=1).T.reshape(-1, _CELLS, _CELLS)
-        self._version += 1
-        self._shown = self.right
-
-    def why(self) -> str:
-        return " ".join(
-            texts.LEARN_PLANE_WHY.format(units=units, right=self.results[units], count=len(self.points))
-            for units in sorted(self.results)
-        )
+        self.planes = np.concatenate([hidden, stages[-1]], axis=1).T.reshape(-1, _CELLS, _CELLS)
+        self.version += 1
+        self.right = int(((self.network.predict(self.points) > 0) == (self.targets > 0)).sum())
 
     def verdict(self) -> int | None:
         """Return the fewest neurons that divided nearly all points; None before all fewer ones were tried, too."""
@@ -139,19 +127,54 @@ class PlaneChapter(Chapter):
                 return answer
         return None
 
+
+class PlaneChapter(Chapter):
+    """The points, and the plane in the colour of what the network answers there."""
+
+    key, door = "plane", Route("train")
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._cache = PaintCache(most=2 * max(UNITS) + 4)
+        self.model = Divided()
+
+    def restart(self) -> None:
+        self.model.restart()
+        self.tried = False
+
+    def controls(self, column: Column) -> None:
+        at = UNITS.index(self.model.units)
+        column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), at, self.model.choose)
+        column.button(texts.LEARN_PLANE_AGAIN, self.model.begin)
+
+    def update(self) -> None:
+        if self.model.step():
+            self.found()
+
+    def verdict(self) -> int | None:
+        return self.model.verdict()
+
+    def why(self) -> str:
+        return " ".join(
+            texts.LEARN_PLANE_WHY.format(units=units, right=right, count=len(self.model.points))
+            for units, right in sorted(self.model.results.items())
+        )
+
     def below(self, column: Column) -> None:
         column.text(
-            lambda: texts.LEARN_PLANE_STATE.format(right=self._shown, count=len(self.points), steps=self.steps),
+            lambda: texts.LEARN_PLANE_STATE.format(
+                right=self.model.right, count=len(self.model.points), steps=self.model.steps
+            ),
             size=SMALL,
         )
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        side = box.height - 22
+        side, points, targets = box.height - 22, self.model.points, self.model.targets
         plane = pygame.FRect(box.left, box.top, side, side)
         self._draw_plane(canvas, plane, -1)
         canvas.line((plane.centerx, plane.top), (plane.centerx, plane.bottom), FAINT)
         canvas.line((plane.left, plane.centery), (plane.right, plane.centery), FAINT)
-        for (x, y), target in zip(self.points.tolist(), self.targets[:, 0].tolist(), strict=True):
+        for (x, y), target in zip(points.tolist(), targets[:, 0].tolist(), strict=True):
             place = (plane.centerx + x * side / 2, plane.centery - y * side / 2)
             colour = canvas.palette.good if target > 0 else canvas.palette.warn
             canvas.marker("ring" if target > 0 else "triangle", place, 9, colour)
@@ -165,20 +188,21 @@ class PlaneChapter(Chapter):
         self._draw_network(canvas, beside)
 
     def _draw_plane(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
-        colours, values = (canvas.palette.warn, canvas.palette.good), self._planes[number]
-        shows = (self._version, number % len(self._planes))
+        colours, values = (canvas.palette.warn, canvas.palette.good), self.model.planes[number]
+        shows = (self.model.version, number % len(self.model.planes))
         self._cache.draw(canvas, box, shows, lambda sheet: paint_heat(sheet, values, *colours))
 
     def _draw_network(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw each hidden unit as its own map of the plane, with lines as wide as the weights."""
+        count = self.model.units
         mini = min(0.1 * box.height, 0.22 * box.width)
         units = [
-            pygame.FRect(box.left + 0.5 * box.width, box.centery + (number - self.units / 2) * 1.16 * mini, mini, mini)
-            for number in range(self.units)
+            pygame.FRect(box.left + 0.5 * box.width, box.centery + (number - count / 2) * 1.16 * mini, mini, mini)
+            for number in range(count)
         ]
         out = pygame.FRect(box.right - 1.3 * mini, box.centery - 0.65 * mini, 1.3 * mini, 1.3 * mini)
         inputs = [(box.left + 0.2 * box.width, box.centery + side * 0.16 * box.height) for side in (-1, 1)]
-        layers = [layer for layer in self.network.layers if isinstance(layer, FullyConnectedLayer)]
+        layers = [layer for layer in self.model.network.layers if isinstance(layer, FullyConnectedLayer)]
         sources, targets = [inputs, [unit.midright for unit in units]], [units, [out]] if units else [[out]]
         for layer, starts, ends in zip(layers, sources, targets, strict=False):
             for row, start in enumerate(starts):

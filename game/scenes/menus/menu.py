@@ -13,7 +13,7 @@ from game.core.scene import Pop, Quit, Transition, push
 from game.core.settings import TOP_RUNG
 from game.drawing.cursor import LEADING
 from game.drawing.prose import lines
-from game.drawing.tokens import INK, MUTE, STEP, TEXT, VIEW_SIZE
+from game.drawing.tokens import INK, MUTE, SMALL, STEP, TEXT, VIEW_SIZE
 from game.flight.days import Days
 from game.flight.logbook import Records, best_descent, ladder_rung
 from game.input.controls import Command
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from game.ui.panel import Panel
     from game.ui.widget import OnPress
 
-_WORD: Final = 22.0
+_WORD, _LEAST = 22.0, 18.0  # size of a word in a high window, and in a low one
 # Size of the title: at most this, and these shares of the window's width and height.
 _TITLE, _ACROSS, _DOWN = 88.0, 0.11, 0.12
 _LINE_ROOM, _LINE_SHARE = 520.0, 0.52  # points of the line, and share of the window, which ends before the Earth
@@ -75,12 +75,11 @@ class MenuScene(_OverMoon):
     def describe(self, panel: Panel) -> None:
         panel.add(self._write_title)
         panel.add(self._write_line)
-        for name in ROWS:
-            panel.button(texts.MENU[name][0], partial(self._open, name), size=_WORD, weight="light")
+        self._words = [panel.button(texts.MENU[name][0], partial(self._open, name), weight="light") for name in ROWS]
 
     def lay_out(self) -> None:
-        for word in self.form.widgets:
-            word.pad = _PAD * self._roominess  # type: ignore[attr-defined]
+        for word in self._words:
+            word.pad, word.size = _PAD * self._roominess, _LEAST + (_WORD - _LEAST) * self._roominess
         super().lay_out()
 
     @property
@@ -100,12 +99,15 @@ class MenuScene(_OverMoon):
 
     def _write_line(self, cursor: Cursor) -> None:
         """Write where the word in focus leads to, and leave room for the longest of these lines."""
-        width = min(cursor.width, _LINE_ROOM, _LINE_SHARE * self.context.reading().view.width)
+        roomy = self._roominess
+        width = min(cursor.width, _LINE_ROOM, (_LINE_SHARE if roomy else 1.0) * self.context.reading().view.width)
+        size = SMALL + (TEXT - SMALL) * roomy
         sentences = [texts.MENU[name][1] for name in ROWS]
         if self.form.focused:
-            replace(cursor, width=width, colour=MUTE).text(sentences[self.form.widgets.index(self.form.focused)])
-        longest = max(len(lines(each, TEXT, cursor.weight, width, cursor.scale)) for each in sentences)
-        cursor.gap(longest * LEADING * TEXT + STEP + _BETWEEN * self._roominess)
+            line = replace(cursor, width=width, colour=MUTE, size=size)
+            line.text(sentences[self.form.widgets.index(self.form.focused)])
+        longest = max(len(lines(each, size, cursor.weight, width, cursor.scale)) for each in sentences)
+        cursor.gap(longest * LEADING * size + STEP + _BETWEEN * roomy)
 
     def _open(self, name: str) -> Transition:
         if name == "quit":

@@ -198,16 +198,16 @@ class StepRecord:
 
     def _read_pairs(self) -> Iterator[Pair]:
         world = self.exhibit.world
-        shapes, table = world.pairs, world.shape_table
-        row_of = dict(zip(self.contacts.pair.tolist(), range(len(self.contacts)), strict=True)) if self.contacts else {}
+        table = world.shape_table
+        touching = self.contacts.shape.tolist() if self.contacts else []
+        row_of = {(a, b): row for row, (a, b) in enumerate(touching)}
         seen = [0, 0, 0]
-        for pair in self.call(BroadPhase.near).values[f"{RETURN}.1"].tolist():
-            a, b = shapes[pair].tolist()
+        for a, b in self.call(BroadPhase.near).values[f"{RETURN}.1"].tolist():
             circles = int(table.is_circle[[a, b]].sum())
             number, seen[circles] = seen[circles], seen[circles] + 1
             axes, chosen, call, line = self._axes(circles, number, (a, b))
             bodies = (int(table.body[a]), int(table.body[b]))
-            yield Pair(bodies, circles, axes, chosen, number, call, line, row_of.get(pair))
+            yield Pair(bodies, circles, axes, chosen, number, call, line, row_of.get((a, b)))
 
     def _axes(self, circles: int, number: int, shapes: tuple[int, int]) -> tuple[list[Axis], int, Call, int]:
         """Return the axes of a pair, the chosen one, and the call and the line in which it was chosen."""

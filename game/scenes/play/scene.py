@@ -32,6 +32,7 @@ from game.scenes.play.tutorial import Tutorial
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
 from game.ui.context import Context
+from game.ui.form import Form
 from game.ui.hints import HintRow
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
@@ -65,7 +66,7 @@ class PlayScene(Scene):
         super().__init__(context)
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._stick = FlightControls(context.controls, context.settings)
-        self.explained = Explained()
+        self.form, self.explained = Form(context), Explained()
         self._away = self._held_next = 0  # steps since the window was left, and the key for what comes next is held
         self._records = Records(context.user_dir)
         entries = self._records.entries()
@@ -108,6 +109,12 @@ class PlayScene(Scene):
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         self.explained.handle_event(event)
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            canvas = self.context.reading()
+            self.form.lay_keys(self.hint_rows(canvas), canvas)
+            outcome = self.form.handle_event(event)
+            if self.form.used:
+                return outcome
         if event.type in _RELEASES:
             self._held_next = 0
         elif translate(event) is Command.NEXT:
@@ -129,10 +136,6 @@ class PlayScene(Scene):
     @property
     def takes_switch(self) -> bool:  # type: ignore[override]
         return not self.flight.over
-
-    @property
-    def notes_low(self) -> bool:  # type: ignore[override]
-        return self.waiting or self.flight.over
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -259,15 +262,15 @@ class PlayScene(Scene):
         self._away = 0
         return push("flight_pause", self)
 
-    def choose_network(self, name: str) -> None:
-        self._settings.model = name
-        if self.context.pilot:
-            self.context.pilot.chosen = False
-        self.context.apply_settings()
-        self._change_network()
-
-    def choose_own(self, path: Path | None) -> None:
-        own.take(self.context, path)
+    def choose_network(self, name: str, path: Path | None = None) -> None:
+        """Let another network fly, or with a `path` a file of the player's own."""
+        if path:
+            own.take(self.context, path)
+        else:
+            self._settings.model = name
+            if self.context.pilot:
+                self.context.pilot.chosen = False
+            self.context.apply_settings()
         self._change_network()
 
     def _change_network(self) -> None:

@@ -33,13 +33,12 @@ LANDINGS: Final = "success"  # the chart of the share that lands
 SCORE: Final = "mean_return"  # the chart of what a flight earns
 FEW_CHARTS: Final = 2
 STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
-_TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = 10.0  # seconds that the axis spans at least
 _DASH: Final = (5.0, 4.0)  # of a second curve
 _WIDE: Final = 300.0  # points of a chart with room for one line in a line
-_SIZE: Final = LABEL - 1.0  # of captions
+_SIZE: Final = LABEL  # of captions
 _LEADING: Final = 12.0
 _DROP: Final = 12.0  # from the bottom of a chart to the first baseline of its caption
 Line = tuple[Doubles, Doubles]  # of a curve: seconds, and values
@@ -102,7 +101,7 @@ DIGIT_CHARTS: Final = {
 
 
 class LandingsCaption:
-    """Caption of the chart of landings, read together with its number and painted in the same frame as that.
+    """Caption of the chart of landings, read together with its number.
 
     Attributes:
         shown: the caption; None without one.
@@ -146,14 +145,9 @@ class Beside:
 
 
 class TrainingCharts(Charts):
-    """Charts over the seconds of a run.
+    """Charts over the seconds of a run. All of them show the same moment: they are set, and painted, together."""
 
-    Attributes:
-        moment: the moment under the marker, in decisions; None for now.
-
-    """
-
-    def __init__(self, kinds: Mapping[str, ChartKind] = LANDER_CHARTS) -> None:
+    def __init__(self, kinds: Mapping[str, ChartKind]) -> None:
         self._kinds = kinds
         self._all = [
             Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
@@ -161,9 +155,8 @@ class TrainingCharts(Charts):
             for name, kind in kinds.items()
         ]  # fmt: skip
         super().__init__(self._all)
-        self._turn = 0
+        self._history = History()
         self.show(more=False)
-        self.clear()
 
     def show(self, *, more: bool) -> None:
         """Show all charts, or few."""
@@ -174,40 +167,22 @@ class TrainingCharts(Charts):
         for chart, box in zip(self.charts, boxes, strict=True):
             chart.move(box)
 
-    def clear(self) -> None:
-        """Reset for another run, or for other runs beside it."""
-        self._history = History()
-        self.moment: int | None = None
-        self.mark(None)
-        self._contents: list[object] = [None] * len(self._all)  # what is shown in each chart
-
-    def look(self, history: History, beside: Beside = Beside(), say: Callable[[str], str] = lambda _: "") -> bool:
-        """Read new points of a run and of those beside it, for one chart; call it once a frame.
-
-        `say` returns the caption of a chart for the same points. Return whether there was anything new.
-        """
-        self._turn = (self._turn + 1) % _TURNS
-        number, odd = divmod(self._turn, 2)
+    def take(self, history: History, beside: Beside, said: str, moment: int | None) -> None:
+        """Show a run as far as it has come, and those beside it; `said` stands below the first chart."""
         self._history = history
-        if self.moment is not None:
-            self._mark(self.moment)
-        if odd or number >= len(self.charts):
-            return False
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
-        shown = [(each.name, each.style) for each in runs]
-        counts = len(history), len(history.validations), len(history.setting_changes)
-        contents = counts, shown
-        if self._contents[number] == contents:
-            return False
-        self._contents[number] = contents
-        name = list(self._kinds)[number]
-        compared = runs[:1] if name == SCORE and beside.paid_otherwise else runs
-        self._set(name, self.charts[number], compared, say(name))
-        return True
+        for (name, kind), chart in zip(self._kinds.items(), self._all, strict=True):
+            compared = runs[:1] if name == SCORE and beside.paid_otherwise else runs
+            words = said if chart is self._all[0] else ""
+            if name == SCORE and beside.paid_otherwise:
+                words = texts.LAB_PAID_OTHERWISE
+            self._set(kind, chart, compared, words)
+        self.go_to(moment)
+        for chart in self.charts:
+            chart.renew()
 
-    def _set(self, name: str, chart: Chart, runs: Sequence[EarlierRun], said: str) -> None:
-        kind = self._kinds[name]
+    def _set(self, kind: ChartKind, chart: Chart, runs: Sequence[EarlierRun], said: str) -> None:
         series = []
         for each in runs:
             colour, dash = run_style(each.style)
@@ -216,7 +191,7 @@ class TrainingCharts(Charts):
             series.append(Series(*kind.second(self._history), kind.words()[0], HUMAN, _DASH))
             said = f"{self._both(kind)}\n{said}".strip()
         ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
-        ticks = ticks_of(self._history) if chart is self.charts[0] else ()
+        ticks = ticks_of(self._history) if chart is self._all[0] else ()
         chart.set(series, (0.0, max([_SHORTEST, *ends])), ticks, said)
 
     def _both(self, kind: ChartKind) -> str:
@@ -225,19 +200,13 @@ class TrainingCharts(Charts):
         latest = [float(curve(self._history)[1][-1:].sum()) for curve in curves]
         return kind.words()[1].format(*latest).replace("-", "−") if all(map(math.isfinite, latest)) else ""
 
-    def _mark(self, moment: int) -> None:
-        """Put the marker at a moment."""
-        if not len(self._history):
+    def go_to(self, moment: int | None) -> None:
+        """Put the marker at a moment, in decisions; None takes it away."""
+        if moment is None or not len(self._history):
             self.mark(None)
             return
         seconds = float(np.interp(moment, self._history["decisions"], self._history["seconds"]))
         self.mark(seconds, texts.REWIND_MARK.format(seconds=seconds))
-
-    def go_to(self, moment: int | None) -> None:
-        """Put the marker at a moment, in decisions; None takes it away."""
-        self.moment = moment
-        if moment is None:
-            self.mark(None)
 
     def decisions_at(self, seconds: float) -> float:
         """Return a moment of the current run in decisions; infinite beyond its end."""
@@ -247,17 +216,17 @@ class TrainingCharts(Charts):
         return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
     @property
-    def landed(self) -> tuple[int | None, ...]:
-        """Percent of each run that land, as the first chart was last painted; None before a flight has ended."""
-        return tuple(None if share is None else round(share) for share in self._all[0].painted_latest)
+    def latest(self) -> tuple[int | None, ...]:
+        """Percent that each run of the first chart has come to; None before there is a number."""
+        return tuple(None if (share := run.last()) is None else round(share) for run in self._all[0].runs)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the charts, and what is said of them as it was when they were painted."""
+        """Draw the charts, and what is said of them."""
         super().draw(canvas)
         for name, chart in zip(self._kinds, self.charts, strict=False):
             box = chart.box
             y = box.bottom + _DROP
-            lines = chart.painted_caption.split("\n")
+            lines = chart.caption.split("\n")
             rows = [prose.lines(line, _SIZE, "regular", box.width - 8, canvas.scale)[:2] for line in lines]
             alone = box.width < _WIDE or len(rows[0]) > 1  # below it is the next chart
             for row in rows[0] if alone else itertools.chain(*rows):

@@ -19,7 +19,7 @@ from game.ui.widget import Widget
 
 _DIGITS: Final = 10
 _ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
-_COUNT: Final = 10.5  # the size of a cell's figure
+_COUNT: Final = 12.0  # the size of a cell's figure
 _COLUMNS: Final = 4  # of misread digits
 _GAP: Final = 8.0
 
@@ -53,6 +53,10 @@ class ConfusionMatrix(Widget):
             wrong = confusion.table * (1 - np.eye(_DIGITS, dtype=np.int64))
             row, column = divmod(int(wrong.argmax()), _DIGITS)
             self.cell = (row, column)
+
+    def take_over(self, other: ConfusionMatrix) -> None:
+        """Show what another one shows."""
+        self.confusion, self.cell, self._chosen = other.confusion, other.cell, other._chosen
 
     def take(self, event: pygame.event.Event) -> bool:
         command = translate(event)

@@ -1,35 +1,33 @@
-"""Digit training scene: a network learns in a process of its own; charts and confusion matrix show its progress."""
+"""Digits as Train shows them: what is misread, with the digits of one cell."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import partial
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.digits.config import DIGIT_PRESETS
-from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.scenes.train.base import KNOBS as ALL_KNOBS
-from game.scenes.train.base import Pointer, TrainingScene
-from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
+from game.scenes.train.charts import DIGIT_CHARTS
 from game.scenes.train.digit_views import ConfusionMatrix
-from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.layout import Layout, TrainingStatus
+from game.scenes.train.layout import Layout, Status
+from game.scenes.train.scene import TrainScene
+from game.scenes.train.view import Pointer, View
 from game.training.library import DigitModels
-from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
-from game.training.run_settings import RunSettings
-from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer
+
+if TYPE_CHECKING:
+    from game.ui.context import Context
 
 FALLEN: Final = 0.15  # drop of the accuracy below its best at which a return to the best is offered
 _HEAD: Final = 172.0  # of the display, for the title and a heading
@@ -40,6 +38,11 @@ _SMALLEST: Final = 135.0  # matrix: in a smaller one, its digits would touch
 _LEAST: Final = 180.0  # points beside it for the digits of a cell
 
 
+def digit_training(context: Context) -> TrainScene:
+    """Return the scene of a run of digits."""
+    return TrainScene(context, DigitView)
+
+
 def fallen(history: History) -> tuple[float, float] | None:
     """Return the best and the present accuracy, if the present one is far lower; None otherwise, or after a return."""
     back = max((turn.seconds for turn in history.setting_changes if turn.name == REVERTED), default=-1.0)
@@ -48,33 +51,28 @@ def fallen(history: History) -> tuple[float, float] | None:
     return (best, read[-1]) if read and best - read[-1] > FALLEN else None
 
 
-class DigitTrainingScene(TrainingScene):
-    """Digit training scene: charts, knobs, and the confusion matrix.
+class DigitView(View):
+    """View of a run of digits.
 
     Attributes:
         matrix: what is misread.
 
     """
 
-    def __init__(self, context: Context) -> None:
-        super().__init__(context, TrainingRun(DIGITS, DigitModels(context.user_dir)))
+    kind, charts, preset = DIGITS, DIGIT_CHARTS, "classic"
 
-    def _build(self) -> None:
+    def __init__(self, scene: TrainScene) -> None:
+        super().__init__(scene)
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
-        self.charts = TrainingCharts(DIGIT_CHARTS)
-        change = partial(self.run.ask, "change")
-        settings = RunSettings(DIGIT_PRESETS["classic"], 0, change, self._begin, DIGITS)
-        self.knobs = KnobsPanel(self.form, settings)
         self.matrix = ConfusionMatrix((0, 0, 100, 100))
 
-    # Rows
+    @staticmethod
+    def collection(user_dir: Path) -> DigitModels:
+        return DigitModels(user_dir)
 
-    @property
-    def _key(self) -> Hashable:
-        return self.run.stopping, self._fallen is not None, self._shows_misread
+    # What it has come to
 
-    @property
-    def _status(self) -> TrainingStatus:
+    def status(self) -> Status:
         run = self.run
         history, scores = run.history, run.history.validations
         line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
@@ -88,15 +86,19 @@ class DigitTrainingScene(TrainingScene):
                 read = f"{100 * scores[-1].success:.2f} %" if scores else "–"
                 line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=run.kept_epoch, last=read)
             part, words = run.test, texts.DIGIT_RUN_TESTED
-        return TrainingStatus(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)
+        return Status(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)
 
     @property
-    def _unfinished(self) -> str:
+    def suggestion(self) -> str:
+        return texts.DIGIT_RUN_NAME.format(preset=self.scene.knobs.name)
+
+    @property
+    def unfinished(self) -> str:
         return texts.TRAIN_LEFT if self.run.unfinished else ""
 
     @property
-    def _suggestion(self) -> str:
-        return texts.DIGIT_RUN_NAME.format(preset=self.knobs.name)
+    def worth_keeping(self) -> bool:
+        return self.run.steps > 0 if self.run.alive else self.run.kept
 
     @property
     def _fallen(self) -> tuple[float, float] | None:
@@ -108,38 +110,17 @@ class DigitTrainingScene(TrainingScene):
         """Whether something was read already, and there is room to read what."""
         return self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
 
-    def _pointers(self) -> list[Pointer]:
-        nowhere, charts = (0, 0, 1, 1), self.charts
-        pointers: list[Pointer] = [(VirtualPointer(nowhere, charts.follow), lambda: charts.box)]
-        if self._shows_misread:
-            if self.matrix not in self.form.widgets:  # it was not seen, and its widget is gone
-                before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
-                self.matrix.set(before.confusion)
-                self.matrix.cell = before.cell
-            pointers.append((self.matrix, lambda: self._matrix))
-        return pointers
+    # Rows
 
-    def _place(self, place: Layout) -> None:
-        area = place.swarm
-        self._area = pygame.FRect(_LEFT, area.top + _HEAD, area.width - 2 * _LEFT, max(area.height - _HEAD - 8, 60))
-        side = min(self._area.height - _NUMBERS, _LARGEST, self._area.width - _NUMBERS)
-        matrix = pygame.Rect(round(_LEFT + _NUMBERS), round(self._area.top + _NUMBERS), round(side), round(side))
-        self.matrix.rect = self.matrix.relative_rect = self._matrix = matrix
-        self._cell = pygame.FRect(matrix.right + 36, matrix.top, self._area.right - matrix.right - 36, side)
+    @property
+    def key(self) -> Hashable:
+        return self._fallen is not None, self._shows_misread
 
-    def _describe_more(self, column: Column) -> None:
-        self.switch(column, ALL_KNOBS)
-        column.line()
-        column.words([
-            (texts.TRAIN_SAVE, self._save),
-        ])  # fmt: skip
-
-    def _describe_foot(self, column: Column) -> None:
-        super()._describe_foot(column)
+    def describe_foot(self, column: Column) -> None:
         if self.run.alive:
             column.button(texts.DIGIT_RUN_STOPPING if self.run.stopping else texts.DIGIT_RUN_STOP, self.run.stop)
 
-    def _describe_hint(self, column: Column) -> bool:
+    def describe_hint(self, column: Column) -> bool:
         if (parts := self._fallen) is None:
             return False
         best, now = (f"{100 * part:.1f} %" for part in parts)
@@ -148,53 +129,40 @@ class DigitTrainingScene(TrainingScene):
         column.button(texts.DIGIT_RUN_GO_BACK, partial(self.run.ask, "restore_best"))
         return True
 
+    def pointers(self) -> list[Pointer]:
+        charts = self.scene.charts
+        pointers: list[Pointer] = [(VirtualPointer((0, 0, 1, 1), charts.follow), lambda: charts.box)]
+        if self._shows_misread:
+            before, self.matrix = self.matrix, ConfusionMatrix(self.matrix.box)
+            self.matrix.take_over(before)
+            pointers.append((self.matrix, lambda: self._matrix))
+        return pointers
+
     # Time
 
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Follow the mouse over the charts; everything else is as for any run."""
-        self.charts.follow(event)
-        return super().handle_event(event)
-
     def update(self) -> Transition | None:
-        """Receive the worker's messages, and animate the screen."""
-        run, history = self.run, self.run.history
-        self._listen()
-        if self.matrix.confusion is not run.confusion:
-            self.matrix.set(run.confusion)
-        if run.alive and len(history):
-            rate, before = float(history["learning_rate"][-1]), self.knobs.settings.in_force
-            if before is None or before.values["learning_rate"] != rate:
-                self.knobs.show_in_force(InForce({"learning_rate": rate}))
-        looked = self.charts.look(history, Beside(run.earlier))
-        self.charts.update(at_once=self._settings.reduced_motion, turn=not looked)
-        return self._finish_update()
+        if self.matrix.confusion is not self.run.confusion:
+            self.matrix.set(self.run.confusion)
+        return None
 
-    # The run
-
-    def _toggle(self) -> None:
-        if not self.run.stopping:
-            super()._toggle()
-
-    @property
-    def _worth_keeping(self) -> bool:
-        return self.run.steps > 0 if self.run.alive else self.run.kept
-
-    def _clear(self) -> None:
+    def clear(self) -> None:
         self.matrix.set(None)
-        self.charts.clear()
 
     # The picture
 
-    def _draw_display(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the figures, what is misread, and the charts."""
-        self._sky.draw(canvas)
-        self.draw_title(canvas)
-        if self._shows_misread:
-            self._draw_misread(canvas)
-        self.charts.draw(canvas)
+    def place(self, place: Layout) -> None:
+        area = place.swarm
+        self._area = pygame.FRect(_LEFT, area.top + _HEAD, area.width - 2 * _LEFT, max(area.height - _HEAD - 8, 60))
+        side = min(self._area.height - _NUMBERS, _LARGEST, self._area.width - _NUMBERS)
+        matrix = pygame.Rect(round(_LEFT + _NUMBERS), round(self._area.top + _NUMBERS), round(side), round(side))
+        self.matrix.rect = self.matrix.relative_rect = self._matrix = matrix
+        self._cell = pygame.FRect(matrix.right + 36, matrix.top, self._area.right - matrix.right - 36, side)
 
-    def _draw_misread(self, canvas: Canvas) -> None:
+    def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the headings of the matrix, and the chosen cell's digits."""
+        self._sky.draw(canvas)
+        if not self._shows_misread:
+            return
         box, run = self.matrix.box, self.run
         place = (box.left - _NUMBERS, box.top - _NUMBERS - 4)
         heading = canvas.text(texts.MATRIX_TITLE, place, size=LABEL, colour=MUTE, weight="medium")

@@ -31,6 +31,7 @@ class Inside:
     """The network and the parts of its reward.
 
     Attributes:
+        display: where it is drawn, in points.
         view: shows `network`, None without a run; `shown` is the message that it came with.
         paid: points that each part of the reward has paid per flight, (len(PARTS),).
 
@@ -38,6 +39,7 @@ class Inside:
 
     def __init__(self, run: TrainingRun, is_open: Callable[[], bool]) -> None:
         self._run, self._is_open = run, is_open
+        self.display = pygame.FRect(0, 0, 400, 300)
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
         self.clear()
 
@@ -46,6 +48,7 @@ class Inside:
         self.network: NeuralNetwork | None = None
         self.shown: NetworkState | None = None
         self._seen: NetworkState | None = None
+        self._row = 0
         self.paid = np.zeros(len(PARTS))
 
     @property
@@ -60,14 +63,16 @@ class Inside:
 
     def place(self, display: pygame.FRect) -> None:
         """Move to another box."""
+        self.display = display
         self.view.place((display.left + _MARGIN, display.top + 20, display.width - 2 * _MARGIN, display.height - 36))
 
     def show(self, state: NetworkState | None, row: int = -1) -> None:
         """Show a network, perhaps of an earlier moment, and what was paid at that row of the history."""
+        if state is None or (state is self.shown and row == self._row):
+            return
+        self._row = row
         if len(self._run.history):
             self.paid = np.nan_to_num(self._run.history.parts[row])
-        if state is None or state is self.shown:
-            return
         config, network = self._run.config, self.network
         if network is None or network.values.shape != state.values.shape:
             network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))

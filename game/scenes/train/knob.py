@@ -24,7 +24,7 @@ from game.ui.widget import RowWidget, mix
 _LABELS, _FIGURES = 150.0, 72.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0
 _GAP: Final = 14.0  # between words
-_NOTE: Final = LABEL - 1.5  # size of text over a track
+_NOTE: Final = LABEL  # size of text over a track
 _CLEAR: Final = 9.0  # from the middle of the handle to that text
 
 
@@ -167,20 +167,25 @@ class SliderKnob(Knob):
         if self.now is not None:
             x = left + self._at(self.now) * width
             canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
-            self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle)
+            said = figure(self.now)
+            self._put_beside(canvas, texts.KNOB_NOW.format(value=said), x, handle) or self._put_beside(
+                canvas, said, x, handle
+            )
         place, room = (cursor.right, middle + 4.5), _FIGURES - 8
         canvas.text(figure(self.value), place, size=SMALL, colour=colour, align="right", tabular=True, room=room)
 
-    def _put_beside(self, canvas: Canvas, words: str, x: float, handle: float) -> None:
-        """Write text over the track, around x as far as there is room, clear of the handle."""
+    def _put_beside(self, canvas: Canvas, words: str, x: float, handle: float) -> bool:
+        """Write text over the track, around x as far as there is room, clear of the handle; return whether there is."""
         left, right = self.track
         width = canvas.text_width(words, size=_NOTE)
         start = min(max(x - width / 2, left), right - width)
         if start - _CLEAR < handle < start + width + _CLEAR:
             before, after = handle - _CLEAR - width, handle + _CLEAR
             start = before if before >= left and (x <= handle or after + width > right) else after
-        if left <= start <= right - width:  # a narrow window has short tracks
+        fits = left <= start <= right - width  # a narrow window has short tracks
+        if fits:
             canvas.text(words, (start, self.box.centery - 4), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
+        return fits
 
 
 class WordsKnob(Knob):

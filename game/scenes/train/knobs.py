@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from ai.training.config import InForce
 from game.core import texts
+from game.core.scene import push
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
@@ -27,6 +28,7 @@ from game.ui.panel import Column
 
 _UNDERLINE: Final = 2.0
 _SEEDS: Final = tuple(range(100))
+_FEW: Final = 2  # changes that are named
 _FIRST, _LAST = "learning_rate", "final_learning_rate"  # the first acts until its schedule is over, then the last
 
 
@@ -41,16 +43,16 @@ class KnobsPanel:
         settings: what they set, and what waits for a new run.
 
     Attributes:
-        every: whether the whole page of knobs is shown.
+        page: whether the page of knobs is shown, each with a line and a door to the chapter that explains it.
 
     """
 
     def __init__(self, form: Form, settings: RunSettings) -> None:
-        self._form, self.settings = form, settings
+        self.form, self.settings = form, settings
         self._run_kind = run_kind = settings.run_kind
         chance = KnobDescription(SEED, "", label(SEED), texts.KNOB_SEED, False, "slider", _SEEDS)
         self._descriptions = {each.name: each for each in (*run_kind.knob_descriptions, chance)}
-        self.every = False
+        self.page = False
         self._knobs: dict[str, Knob] = {}
 
     @property
@@ -72,18 +74,19 @@ class KnobsPanel:
     def shown(self) -> tuple[str, ...]:
         """Names of the knobs that are shown: few, or a page of them, without one whose time is over."""
         if (in_force := self.settings.in_force) is None or _LAST not in in_force.values:
-            return self._run_kind.page if self.every else self._run_kind.first
-        names = self._run_kind.page if self.every else (_LAST, *self._run_kind.first)
+            return self._run_kind.page if self.page else self._run_kind.first
+        names = self._run_kind.page if self.page else (_LAST, *self._run_kind.first)
         return tuple(name for name in names if name != _FIRST)
 
     @property
     def key(self) -> Hashable:
         """What decides which rows there are."""
         settings = self.settings
-        return self.shown, settings.holds, settings.changed, self._asks, bool(settings.waiting)
+        return self.page, self.shown, settings.holds, settings.changed, self.asks, bool(settings.waiting)
 
     @property
-    def _asks(self) -> bool:
+    def asks(self) -> bool:
+        """Whether something was changed that can be undone: what waits for a new run, or a preset's place taken."""
         return bool(self.settings.waiting or self.settings.put_aside)
 
     # What the run says
@@ -96,7 +99,7 @@ class KnobsPanel:
 
     def show_in_force(self, in_force: InForce | None) -> None:
         """Show the values in force at this moment of a run beside the settings; None for none."""
-        if in_force is not self.settings.in_force:
+        if in_force != self.settings.in_force:
             self.settings.in_force = in_force
             self.show()
 
@@ -128,29 +131,49 @@ class KnobsPanel:
 
     # Rows
 
+    def open(self) -> None:
+        """Show the page of knobs."""
+        self.page = True
+
+    def close(self) -> None:
+        """Show few knobs again."""
+        self.page = False
+
     def describe(self, column: Column) -> None:
-        """Add the preset's name, and the knobs."""
+        """Add the preset's name, and the few knobs."""
         column.add(self._write_name)
-        kind = self._run_kind
-        if self.every:
-            others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
-            column.words([(kind.said((base, ""))[0], partial(self.load, base)) for base in others])
         for name in self.shown:
             column.widget(self._knob(name))
         self.show()
 
+    def describe_page(self, column: Column) -> None:
+        """Add the presets, and every knob of the page with what it does, and the chapter that explains it."""
+        kind = self._run_kind
+        column.add(self._write_name)
+        column.aside(kind.said(self.settings.holds)[1])
+        others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
+        column.words([
+            (texts.BACK, self.close), *((kind.said((base, ""))[0], partial(self.load, base)) for base in others)
+        ])  # fmt: skip
+        for name in self.shown:
+            column.gap(6)
+            knob = column.widget(self._knob(name))
+            column.aside(knob.description.help)
+            if chapter := kind.chapters.get(name):
+                words = texts.KNOBS_CHAPTER.format(chapter=texts.LEARN[chapter]["title"])
+                column.button(words, partial(push, "chapter", chapter), size=SMALL).pad = 1.0
+        self.show()
+
     def describe_foot(self, column: Column) -> None:
-        """Add what was refused, the question that waits, or the help of the knob in focus."""
+        """Add what was refused, what waits for a new run, or the help of the knob in focus."""
         column.add(self._write_help)  # above the words, which must not move when it goes
-        if self._asks:
+        if self.asks:
             column.text(self._question, size=SMALL, colour=HUMAN)
-            apply = [(texts.KNOBS_APPLY, self._apply)] if self.settings.waiting else []
-            column.words([*apply, (texts.KNOBS_UNDO, self._undo)])
 
     def _knob(self, name: str) -> Knob:
         """Return the widget of a setting: the same one as long as it is on the screen, so that a drag goes on."""
         knob = self._knobs.get(name)
-        if knob is None or knob not in self._form.widgets:
+        if knob is None or knob not in self.form.widgets:
             description = self._descriptions[name]
             knob = KINDS[description.kind](description, self.turn, self._focus_answer)
             self._knobs[name] = knob
@@ -169,32 +192,37 @@ class KnobsPanel:
         cursor.y = title.y + 12
 
     def _question(self) -> str:
+        """Say what takes a new run, and what it was before."""
         settings, said = self.settings, self._run_kind.said
         if not settings.waiting:
             return texts.KNOBS_PUT_ASIDE.format(name=said(settings.named)[0])
-        anew = texts.KNOBS_STARTS_ANEW
         if settings.named != settings.holds:
-            anew = texts.KNOBS_STARTS_ANEW_AS.format(name=said(settings.named)[0])
-        return f"{anew}: {_listed(settings.waiting)}"
+            return texts.KNOBS_STARTS_ANEW_AS.format(name=said(settings.named)[0])
+        changes = ", ".join(
+            texts.KNOBS_CHANGE.format(knob=self._descriptions[name].label, **settings.change(name))
+            for name in settings.waiting[:_FEW]
+        )
+        more = len(settings.waiting) - _FEW
+        return texts.KNOBS_STARTS_ANEW.format(changes=changes if more <= 0 else texts.KNOBS_MORE.format(
+            first=changes, count=more))  # fmt: skip
 
     def _write_help(self, cursor: Cursor) -> None:
         """Write what was refused, or what the knob in focus does, and how to restore it."""
-        settings, knob = self.settings, self._form.focused
+        settings, knob = self.settings, self.form.focused
         if settings.problem:
             cursor.styled(settings.problem, SMALL, cursor.palette.warn)
         elif isinstance(knob, Knob):
             self._write_help_of(knob, cursor)
-        elif self.every and not self._asks:
-            cursor.aside(self._run_kind.said(settings.holds)[1])
 
     def _write_help_of(self, knob: Knob, cursor: Cursor) -> None:
-        cursor.aside(knob.description.help)
+        if not self.page:
+            cursor.aside(knob.description.help)
         if knob.description.field == WEIGHTS and self.settings.running:
             cursor.styled(texts.KNOBS_NEW_PAY, SMALL, HUMAN)
         if not knob.live:
             cursor.aside(texts.KNOBS_NEW_RUN)
         if knob.changed:
-            controls = self._form.controls
+            controls = self.form.controls
             key = texts.KNOBS_CLICK if controls.mouse_in_use else controls.word(Command.RETRY)
             if cursor.canvas:
                 hint = Hint(key, texts.KNOBS_BACK_TO.format(value=figure(knob.home)))
@@ -205,21 +233,17 @@ class KnobsPanel:
     # What the widgets ask for
 
     def _focus_answer(self) -> None:
-        """Move the focus to the button that applies, if there is one."""
-        answers = (texts.KNOBS_APPLY, texts.KNOBS_UNDO)
-        if answer := next((widget for widget in self._form.widgets if widget.label in answers), None):
-            self._form.focus(answer)
+        """Move the focus to the word that starts anew, if something waits for it."""
+        anew = next((widget for widget in self.form.widgets if widget.label == texts.TRAIN_ANEW), None)
+        if anew and self.settings.waiting:
+            self.form.focus(anew)
 
-    def _apply(self) -> None:
+    def apply(self) -> None:
+        """Start a new run, with the changes that wait for one."""
         self.settings.apply()
         self.show()
 
-    def _undo(self) -> None:
+    def undo(self) -> None:
+        """Undo what waits, or give the knobs their place back."""
         self.settings.undo()
         self.show()
-
-
-def _listed(names: list[str]) -> str:
-    """List the knobs that wait, as many as there is room for."""
-    labels = list(dict.fromkeys(label(name.split(".")[0]) for name in names))
-    return ", ".join(labels) if len(labels) < 3 else texts.KNOBS_MORE.format(first=labels[0], count=len(labels) - 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from functools import cache, partial
 from typing import Any, Final, Literal, NamedTuple
 
@@ -23,6 +23,7 @@ from ai.training.messages import DIVERGED
 from game.core import texts
 from game.core.assets import ASSETS_DIR
 from game.core.catalogue import capital
+from game.core.scene import Transition
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
 from game.scenes.train.knobs import KnobsPanel
 from game.training.run import TrainingRun
@@ -60,7 +61,6 @@ class Laboratory:
         knobs: the settings that an experiment changes.
         start: starts the experiment.
         leave: ends the split view, and keeps the experiment if that is true.
-        landed: returns what both land now, in whole percent, as it stands on the screen.
 
     """
 
@@ -68,16 +68,21 @@ class Laboratory:
         self,
         run: TrainingRun,
         knobs: KnobsPanel,
-        start: Callable[[str], None],
+        start: Callable[[str], Transition | None],
         leave: Callable[[bool], None],
-        landed: Callable[[], Sequence[int | None]],
     ) -> None:
-        self._run, self._knobs, self._start, self._leave, self._landed = run, knobs, start, leave, landed
+        self._run, self._knobs, self._start, self._leave = run, knobs, start, leave
         self.page: Literal["", "picks", "guess", "result"] = ""
         self.chosen: Chosen | None = None
         self.came: Verdict | None = None
-        self._recovered = False
+        self._recovered, self._frame = False, 0
+        self._landed: Sequence[int | None] = ()  # what both land now, in percent
         self.said = dict.fromkeys(("differs", "figures", "came", "measured"), "")
+
+    @property
+    def key(self) -> Hashable:
+        """What decides which rows there are."""
+        return self.page, self.chosen, self.came
 
     def open(self) -> None:
         """Show what has come of the experiment that flies, or what there is to try."""
@@ -109,12 +114,20 @@ class Laboratory:
             "measured": measured(chosen.sabotage) if self.came and run.config == PRESETS[MEASURED] else "",
         }
 
-    def update(self, frame: int) -> None:
-        """Judge both runs now and then; after it, note whether the experiment has recovered at the moment shown."""
-        if frame % _JUDGED == 0:
+    def update(self, landed: Sequence[int | None]) -> None:
+        """Judge both runs now and then; after it, note whether the experiment has recovered, by what both land."""
+        self._landed = landed
+        self._frame += 1
+        if self._frame % _JUDGED == 0:
             self.follow()
         if self.came:
-            self._recovered = has_recovered(self._landed(), was=self._recovered)
+            self._recovered = has_recovered(landed, was=self._recovered)
+
+    def begin(self) -> None:
+        """Show what comes of the experiment that has just started."""
+        self.came, self._recovered = None, False
+        self.follow()
+        self.open()
 
     # Pages
 
@@ -134,12 +147,11 @@ class Laboratory:
         """Ask for a guess at what a sabotage will do."""
         self.chosen, self.page = Chosen(sabotage), "guess"
 
-    def _fly(self, guess: Verdict | None) -> None:
+    def _fly(self, guess: Verdict | None) -> Transition | None:
         """Fly the sabotage that was chosen, with a guess or without one."""
         assert self.chosen is not None
         self.chosen = self.chosen._replace(guess=guess)
-        self.came, self._recovered = None, False
-        self._start(self.chosen.sabotage)
+        return self._start(self.chosen.sabotage)
 
     def _guess(self, column: Column) -> None:
         assert self.chosen is not None
@@ -174,6 +186,11 @@ class Laboratory:
         for subject, colour in (("came", NET), ("why", INK), ("measured", MUTE)):
             column.text(partial(self._sentence, subject), size=SMALL, colour=colour)
         column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
+        if self.came:
+            names = list(SABOTAGES)
+            following = names[(names.index(self.chosen.sabotage) + 1) % len(names)]
+            words = texts.LAB_NEXT.format(name=texts.SABOTAGES[following][0])
+            column.button(words, partial(self._ask, following), colour=HUMAN)
         go_on, take = partial(self._leave, False), partial(self._leave, True)
         column.words([(texts.LAB_KEEP_RUN, go_on), (texts.LAB_KEEP_EXPERIMENT, take), (texts.LAB_KNOBS, self.close)])
 
@@ -185,7 +202,7 @@ class Laboratory:
 
     def _figures(self) -> str:
         """What both landed at the verdict, and what they land now."""
-        landed = self._landed()
+        landed = self._landed
         if len(landed) < 2 or None in landed:
             return self.said["figures"]
         return f"{self.said['figures']} {texts.LAB_FIGURES.format(other=landed[1], healthy=landed[0])}".lstrip()
@@ -207,9 +224,11 @@ def has_recovered(landed: Sequence[int | None], *, was: bool = False) -> bool:
 
 
 def why(came: Verdict | None, sabotage: str, *, recovered: bool = False) -> str:
-    """Say what the part is for that was taken away; no cause where it was not missed, or is missed no more."""
-    if came in (None, "as_well"):
+    """Say what the part is for that was taken away, once there is a verdict: why it was missed, or why not here."""
+    if came is None:
         return ""
+    if came == "as_well":
+        return texts.LAB_NOT_MISSED.format(why=texts.SABOTAGE_WHY[sabotage])
     return texts.LAB_RECOVERED if recovered else texts.SABOTAGE_WHY[sabotage]
 
 

@@ -23,6 +23,7 @@ _CHARTS: Final = (0.31, 0.5)  # share of the display for one row of charts, and 
 _COLUMNS: Final = 2
 _TITLE: Final = (24.0, 16.0)  # corner of the title over the display
 _WIDEST: Final = 372.0
+_LOW: Final = 200.0  # points of the display above the charts, in which the title is its figure alone
 _FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
 
 
@@ -64,7 +65,21 @@ def layout(view: pygame.FRect, charts: int) -> Layout:
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
 
 
-class TrainingStatus(NamedTuple):
+def _title_width(place: Layout) -> float:
+    return min(_WIDEST, place.display.width - 2 * _TITLE[0])
+
+
+def hint_row(place: Layout, hints: Sequence[Hint]) -> HintRow:
+    """Return the hints that stand beside the title."""
+    return HintRow(hints, (_TITLE[0] + _title_width(place) - 16, _TITLE[1] + 30), from_right=True)
+
+
+def is_low(place: Layout) -> bool:
+    """Whether there is so little room above the charts that the title is its figure alone."""
+    return place.swarm.height < _LOW
+
+
+class Status(NamedTuple):
     """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
 
     title: str
@@ -72,20 +87,21 @@ class TrainingStatus(NamedTuple):
     figure: str
     words: str
 
-    def draw(self, canvas: Canvas, place: Layout, hints: Sequence[Hint]) -> None:
-        """Draw the title over the display, and the share that succeeds, large."""
-        left, top = _TITLE
-        width = min(_WIDEST, place.display.width - 2 * left)
+    def draw(self, canvas: Canvas, place: Layout) -> None:
+        """Draw the title over the display, and the share that succeeds, large; over a low one that share alone."""
+        (left, top), width, low = _TITLE, _title_width(place), is_low(place)
+        if low and not self.figure:
+            return
         size = min(max(_FIGURE[2] * place.swarm.height, _FIGURE[0]), _FIGURE[1])
-        cursor = Cursor(left + 16, top + 10, width - 32, canvas.scale)
-        self._write(cursor, size)
-        box = (left, top, width, cursor.y - top + 8)
-        canvas.panel(box, 1.0)
-        self._write(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), size)
-        HintRow(hints, (left + width - 16, top + 30), from_right=True).draw(canvas)
+        cursor = Cursor(left + 16, top + (2 if low else 10), width - 32, canvas.scale)
+        begun = cursor.y
+        self._write(cursor, size, low)
+        canvas.panel((left, top, width, cursor.y - top + 8), 1.0)
+        self._write(Cursor(left + 16, begun, width - 32, canvas.scale, canvas), size, low)
 
-    def _write(self, cursor: Cursor, size: float) -> None:
-        cursor.styled(self.title, TITLE)
+    def _write(self, cursor: Cursor, size: float, low: bool) -> None:
+        if not low:
+            cursor.styled(self.title, TITLE)
         if self.figure:
             wide = cursor.in_style(size, weight="light").measured(self.figure, tabular=True)
             if canvas := cursor.canvas:
@@ -95,4 +111,5 @@ class TrainingStatus(NamedTuple):
                 left, room = left + wide + 12, cursor.width - wide - 10
                 canvas.text(self.words, (left, y), size=SMALL, colour=MUTE, room=room)
             cursor.gap(1.08 * size)
-        cursor.aside(self.line)
+        if not low:
+            cursor.aside(self.line)

@@ -1,382 +1,437 @@
-"""Train scene: a swarm learns to land in a process of its own; its charts are live, and so are the knobs."""
+"""Train scene: a run in a process of its own, what is seen of it, its charts, and a panel of words."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
-from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
 import pygame
 
-from ai.training.config import PRESETS, Config
-from ai.training.experiments import differences, sabotaged
-from ai.training.lander_session import CAREFUL
 from game.core import texts
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Pop, Push, Transition
+from game.core.shelf import LibraryError
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, LINE, NIGHT0, SMALL
-from game.explain.lesson_door import LessonDoor
-from game.scenes.train.advice import Advice
-from game.scenes.train.base import CHARTS, INSIDE, KNOBS, Pointer, TrainingScene
-from game.scenes.train.charts import LANDINGS, SCORE, Beside, LandingsCaption, TrainingCharts
-from game.scenes.train.inside import Inside
+from game.drawing.tokens import HUMAN, INK, LINE, NIGHT0, PANEL, SMALL, TITLE
+from game.explain.explained import Explained
+from game.input.controls import Command
+from game.scenes.menus.dialogs import NameDialog, QuestionDialog
+from game.scenes.train.charts import FEW_CHARTS, TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.laboratory import Laboratory
-from game.scenes.train.landers import HEAD, Landers
-from game.scenes.train.layout import Layout, TrainingStatus
-from game.scenes.train.rewind import Rewind
-from game.training.library import Library
-from game.training.record import take_away
+from game.scenes.train.landers import LanderView
+from game.scenes.train.layout import Layout, hint_row, is_low, layout
 from game.training.run import PACES, TrainingRun
-from game.training.run_kind import LANDERS
 from game.training.run_settings import RunSettings
-from game.ui.charts import Scrubber
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.panel import Column
-from game.ui.rows import RunRow
-from game.ui.virtual_pointer import VirtualPointer
+from game.ui.form import Form, FormScene
+from game.ui.hints import HintRow
+from game.ui.panel import Column, Panel
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from game.scenes.train.view import View
+    from game.ui.rows import ButtonRow
+
+_MARGIN: Final = 32.0  # of the panel
+_LEAST: Final = 80.0  # points of height for the title above the charts
+_FOOT: Final = 0.8  # share of the panel that its foot takes at most
+_LOW: Final = 220.0  # points of height, below which the foot scrolls with all else
+_LOOKS: Final = 10  # frames from one look at the run to the next
+MORE: Final = "more"  # what a player can open: the words for all else, and every chart
+CHARTS: Final = "charts"
 
 
-class TrainScene(TrainingScene):
-    """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once.
+class TrainScene(FormScene):
+    """Train scene: what is seen of a run, and a panel with its knobs and the button that starts it.
+
+    Some six times a second it looks at the run: title, halves, charts and verdict all say what it saw then. The panel
+    is laid anew whenever other rows are to be seen. What the player opens stays open in later visits.
+
+    Args:
+        context: the shared services.
+        view: the kind of runs, as it is seen.
+        resume: a saved run that goes on at once.
 
     Attributes:
-        landers: what is seen of them.
-        laboratory: the experiment that was chosen, and what came of it.
-        inside: the network.
-        rewind: the moment that is shown.
+        run: the run, with the experiment beside it; the place of one without a name is locked until the scene is left.
+        left: the run that was left without a name by the last visit; None without one.
+        view, knobs, charts: what is seen of the run, the panel of knobs, and the curves.
+        landed: percent of each run that succeeds, at the last look; None before there is a number.
+        start_button: the button that starts, pauses and resumes.
 
     """
 
-    def __init__(self, context: Context, resume: Path | None = None) -> None:
-        self.library = Library(context.user_dir)
-        super().__init__(context, TrainingRun(LANDERS, self.library))
-        if resume:
-            self._start(Config(), 0, resume)
+    panel: Panel
+    _foot: Panel
+    start_button: ButtonRow
 
-    def _build(self) -> None:
-        run = self.run
-        self.charts, self.caption = TrainingCharts(), LandingsCaption()
-        settings = RunSettings(PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
-        self.knobs = KnobsPanel(self.form, settings)
-        self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
-        self.rewind = Rewind(run)
-        self.landers = Landers(run, self.rewind)
-        self.inside = Inside(run, partial(self.opened, INSIDE))
-        self.lessons = LessonDoor(run, self.context.note, self.context.rng)
-        self._offers = False  # whether there is a first landing to stop at
-        run.set_pace(0 if self._settings.slow_runs else len(PACES) - 1)
-        self._advice = Advice(run, self.knobs.turn)
-        self._frame = 0
-        self._news = False  # of the network, on which there is no advice yet
+    def __init__(self, context: Context, view: type[View] = LanderView, resume: Path | None = None) -> None:
+        super().__init__(context, self._back)
+        self.run = run = TrainingRun(view.kind, view.collection(context.user_dir))
+        self._settings, self._was_running, self._frame, self._alive = context.settings, False, 0, False
+        self._laid: Hashable = None
+        self._page: Hashable = False
+        self._seen: Hashable = None
+        self._layout: Layout | None = None
+        self.landed: tuple[int | None, ...] = ()
+        self.explained = Explained()
+        try:
+            run.keeps = run.collection.hold()
+            if not run.keeps:
+                context.note(texts.TRAIN_ELSEWHERE)
+            self.left = run.collection.rescued() if run.keeps else None
+            self.charts = TrainingCharts(view.charts)
+            settings = RunSettings(view.kind.presets[view.preset], 0, partial(run.ask, "change"), self.begin, view.kind)
+            self.knobs = KnobsPanel(self.form, settings)
+            self.view = view(self)
+            self._look()
+            self._lay()
+            self.form.focus(self.start_button)
+            self.lay_out()
+        except BaseException:  # nobody closes a scene that could not be built
+            self.close()
+            raise
+        if resume:
+            self.start(self.knobs.config, 0, resume)
+
+    # What the player opens
+
+    def opened(self, name: str) -> bool:
+        """Whether a part is open."""
+        return self._settings.is_open(name)
+
+    def open(self, name: str) -> None:
+        """Open a part, or close it; it stays so for this player."""
+        self._settings.unfold(name)
+        self.context.apply_settings()
+
+    def switch(self, column: Column, name: str, words: tuple[str, str], help_: str = "") -> None:
+        """Add the word that opens a part, or closes it."""
+        column.button(words[self.opened(name)], partial(self.open, name)).pad = 3.0
+        column.explain(help_)
 
     # Rows
 
-    @property
-    def _key(self) -> Hashable:
-        earlier = tuple((each.name, each.style) for each in self.run.earlier)
-        opened = self.inside.opened and len(self.run.history) > 0
-        now = self.rewind.moment is None
-        return self.laboratory.page, self.run.twin is None, now, self._advice.key, earlier, opened, self._offers
+    def _lay(self) -> None:
+        """Describe the panel anew; the focus stays on what has the same name."""
+        before, page, self._page = self.form, self._page, self._shown_page
+        scrolled = self.panel.scrolled if self._laid is not None and page == self._page else 0.0
+        self.form = self.knobs.form = Form(self.context, before.back)
+        self.panel = Panel(self.form)
+        self._foot = self.panel if self._low else Panel(self.form)
+        self._pointed = self.view.pointers()
+        for widget, _ in self._pointed:
+            self.form.add(widget)
+        self._describe(self.panel)
+        self._describe_foot(self._foot)
+        self.form.follow(before, self.start_button)
+        if page != self._page and self.panel.widgets:  # from its top
+            self.form.focus(self.panel.widgets[0])
+        self._laid, self._layout = self._rows_key, None
+        self.lay_out()
+        self.panel.scroll(scrolled)
 
     @property
-    def _status(self) -> TrainingStatus:
-        run, row, title, landed = self.run, self.rewind.row, texts.TRAIN_TITLE, texts.TRAIN_LANDED
-        if run.swarm_state is None or not len(run.history):
-            return TrainingStatus(title, texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE, "", landed)
-        landers, seconds = len(run.swarm_state.outcome), run.history["seconds"][row]
-        count = int(run.swarm_state.decisions) if self.rewind.moment is None else self.rewind.moment
-        line = texts.TRAIN_FIGURES.format(landers=landers, seconds=seconds, count=count)
-        share = 100 * run.history["success_rate"][row]
-        if self.rewind.moment is None and self.charts.landed and self.charts.landed[0] is not None:
-            share = self.charts.landed[0]  # one number for the title and its chart
-        figure = "" if np.isnan(share) else f"{share:.0f}"
-        return TrainingStatus(title, line, figure, landed)
+    def _shown_page(self) -> Hashable:
+        """Which page the panel shows."""
+        return self.view.page or self.knobs.page
 
     @property
-    def _unfinished(self) -> str:
-        left = self.left
-        if self.run.runs or left is None or not left.resumable:
-            return ""
-        words = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
-        return words.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
+    def _room(self) -> pygame.FRect:
+        """Room of the panel, with its foot."""
+        return layout(self.context.reading().view, 1).panel.inflate(-2 * _MARGIN, -2 * 20.0)
 
-    def _place(self, place: Layout) -> None:
-        self.landers.place(place.swarm)
-        self.inside.place(place.display)
+    @property
+    def _low(self) -> bool:
+        """Whether there is so little room that all rows scroll, those of the foot too."""
+        return self._room.height < _LOW
 
-    def _pointers(self) -> list[Pointer]:
-        nowhere, charts = (0, 0, 1, 1), self.charts
-        if self.inside.opened:
-            view = VirtualPointer(nowhere, self.inside.follow)
-            return [(view, lambda: self.inside.view.box)]
-        landers = VirtualPointer(nowhere, self._choose_lander, hold=texts.LESSON_MARK)
-        scrubber = Scrubber(charts, self._scrub, self._duel)
-        return [
-            (landers, lambda: self.landers.box),
-            (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
-            (scrubber, lambda: charts.charts[0].box.union(charts.charts[1].box)),
-        ]
-
-    def _scrub(self, place: float | int) -> None:
-        if isinstance(place, int):
-            self.rewind.shift(place)
-        else:
-            self.rewind.go_to(self.charts.decisions_at(place))
+    @property
+    def _rows_key(self) -> Hashable:
+        run = self.run
+        return (
+            self._settings.opened, self.knobs.key, self.view.key, bool(run.problem), run.alive, run.stopping,
+            bool(self.view.unfinished), self._low,
+        )  # fmt: skip
 
     def _describe(self, column: Column) -> None:
-        self.rewind.describe(column, timeline=self.inside.opened)
-        if self.inside.opened:
-            self.inside.describe(column)
+        """Add the rows of the panel."""
+        view = self.view
+        view.describe_first(column)
+        if view.page:
+            view.describe_page(column)
+        elif self.knobs.page:
+            self.knobs.describe_page(column)
+        else:
+            self.knobs.describe(column)
             column.gap()
-            column.button(texts.LESSON_WHY, self._ask_why)
-            self.switch(column, INSIDE)
-            return
-        if self.laboratory.page:
-            self.laboratory.describe(column)
-            return
-        super()._describe(column)
-        self._describe_beside(column)
+            self.switch(column, MORE, texts.MORE)
+            if self.opened(MORE):
+                self._describe_more(column)
+            view.describe_last(column)
 
     def _describe_more(self, column: Column) -> None:
-        for name in (INSIDE, CHARTS, KNOBS):
-            self.switch(column, name)
-        column.button(texts.TRAIN_EXPERIMENTS, self.laboratory.open).pad = 3.0
-        column.button(texts.TASTE_NAME, lambda: push("taste")).pad = 3.0
-        column.button(texts.TRAIN_RUNS, self._open_runs).pad = 3.0
-        column.gap(8)
-        column.line()
-        column.words([
-            (texts.LESSON_WHY, self._ask_why),
-            (texts.TRAIN_DUEL, self._duel),
-            (texts.TRAIN_SAVE, self._save),
-        ])  # fmt: skip
+        helps = texts.TRAIN_HELP
+        self.view.describe_more(column)
+        if len(self.view.charts) > FEW_CHARTS:
+            self.switch(column, CHARTS, texts.TRAIN_MORE_CHARTS, helps["charts"])
+        for word, press, name in (
+            (texts.TRAIN_MORE_KNOBS, self.knobs.open, "knobs"),
+            (texts.TRAIN_SAVE, self._save, "save"),
+        ):
+            column.button(word, press).pad = 3.0
+            column.explain(helps[name])
 
     def _describe_foot(self, column: Column) -> None:
-        super()._describe_foot(column)
-        column.choice("", texts.TRAIN_PACES, self.run.pace, self._set_pace, SMALL)
+        """Add what went wrong, or a hint, or help; the run that can go on; and the words that start."""
+        if self.run.problem:
+            column.text(lambda: self.run.problem, size=SMALL, colour=HUMAN)
+        elif not self.view.describe_hint(column):
+            self.knobs.describe_foot(column)
+        if words := self.view.unfinished:
+            column.button(texts.TRAIN_GO_ON, self._go_on_with_last, words, colour=HUMAN)
+        column.gap()
+        anew = [(texts.TRAIN_ANEW, self.knobs.apply)] if self.knobs.settings.running and not self.run.stopping else []
+        undo = [(texts.KNOBS_UNDO, self.knobs.undo)] if self.knobs.asks else []
+        self.start_button, *others = column.words([(self._start_label, self._toggle), *anew, *undo], TITLE, INK)
+        for each in (self.start_button, *others):
+            each.pad = 2.0
+        self.view.describe_foot(column)
 
-    def _set_pace(self, index: int) -> None:
+    def lay_out(self) -> None:
+        """Lay everything out for the window as it is."""
+        canvas = self.context.reading()
+        for more in (self.opened(CHARTS), False):
+            self.charts.show(more=more)
+            place = layout(canvas.view, len(self.charts.charts))
+            if place.swarm.height >= _LEAST:  # or else there is no room for every chart
+                break
+        if place != self._layout:
+            self._layout = place
+            self.charts.place(place.charts)
+            self.view.place(place)
+            for widget, box in self._pointed:
+                widget.relative_rect = widget.rect = pygame.Rect(box())
+        room = self._room
+        height = 0.0
+        if self._foot is not self.panel:
+            self._foot.lay_out(pygame.FRect(room.left, room.top, room.width, _FOOT * room.height), canvas.scale)
+            height = min(self._foot.height, _FOOT * room.height)
+            below = pygame.FRect(room.left, room.bottom - height, room.width, height + 1)
+            self._foot.lay_out(below, canvas.scale)
+            height += 10
+        self.panel.lay_out(pygame.FRect(room.topleft, (room.width, room.height - height)), canvas.scale)
+
+    # Events and time
+
+    def enter(self) -> None:
+        """Resume the run, after a duel with a checkpoint for instance."""
+        if self._was_running:
+            self.run.resume()
+
+    def exit(self) -> None:
+        """Pause the run while another scene has the window."""
+        self._was_running = self.run.state in (WorkerState.RUNNING, WorkerState.STARTING)
+        self.run.pause()
+
+    def close(self) -> None:
+        """End the run's process; its latest network is kept."""
+        self.run.close()
+        self.run.collection.release()
+
+    def actions(self) -> Table:
+        """Go back; start or pause, as the button says."""
+        back = texts.HINT_BACK if self.view.moment is None else texts.REWIND_BACK
+        return [self.form.goes_back(back), Action(Command.HANDOVER, self._toggle), self.explained.action()]
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        return [hint_row(self._layout, self.hints[:1])] if self._layout else []
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Go on explaining; scroll the panel by the wheel; everything else is the view's and the form's."""
+        if self.explained.handle_event(event):
+            return None
+        if not self.view.fills:
+            self.charts.follow(event)
+        self.view.follow(event)
+        outcome = super().handle_event(event)
+        over = self._layout is not None and self._layout.panel.collidepoint(self.form.manager.mouse_position)
+        if event.type == pygame.MOUSEWHEEL and not self.form.used and over:
+            self.form.used = self.panel.turn_wheel(event.y)
+        if not self.form.used:
+            self.view.follow_unused(event)
+        return outcome
+
+    def update(self) -> Transition | None:
+        """Receive the worker's messages, look at the run now and then, and animate the screen."""
+        self._listen()
+        outcome = self.view.update()
+        self._frame += 1
+        self._look()
+        self.charts.update(at_once=self._settings.reduced_motion)
+        self.explained.update()
+        outcome = self.form.update() or outcome
+        if self._rows_key != self._laid and not any(widget.held or widget.typing for widget in self.form.widgets):
+            self._lay()
+        self.lay_out()
+        return outcome
+
+    def _listen(self) -> None:
+        """Receive the worker's messages; show the run's settings once it tells them, and whether it goes on."""
+        run = self.run
+        for note in run.poll():
+            self.context.note(note)
+        if run.begun:
+            run.begun = False
+            self.knobs.set_config(run.config, run.seed)
+            run.call(self.knobs.name)  # of one that goes on, that is known only now
+        if run.alive != self._alive:
+            self._alive = run.alive
+            self.knobs.set_running(run.alive)
+        if in_force := run.in_force:
+            self.knobs.show_in_force(in_force)
+        self.start_button.label = self._start_label
+
+    def _look(self) -> None:
+        """Look at the run: all that is said of it until the next look is read here, at once."""
+        history, view = self.run.history, self.view
+        beside = view.beside
+        urgent = view.moment, [(each.name, each.style) for each in beside.runs], self.run.state, self.charts.charts
+        if self._frame % _LOOKS and self._seen == urgent:
+            return
+        self._seen = urgent
+        self.charts.take(history, beside, view.caption(), view.moment)
+        self.landed = self.charts.latest
+        self.status = view.status()
+
+    @property
+    def _start_label(self) -> str:
+        """What the button says that starts, pauses and resumes the run."""
+        if self.run.state in (WorkerState.RUNNING, WorkerState.STARTING):
+            return texts.TRAIN_PAUSE
+        return texts.TRAIN_RESUME if self.run.state is WorkerState.PAUSED else texts.TRAIN_START
+
+    # The run
+
+    def _toggle(self) -> None:
+        run = self.run
+        if run.stopping:
+            return
+        if run.state is WorkerState.PAUSED:
+            run.resume()
+        elif run.alive:
+            run.pause()
+        else:
+            self.begin(self.knobs.config, self.knobs.seed)
+
+    def begin(self, config: Any, seed: int) -> None:
+        """Start a run; one that has learnt and has no name is put among the player's networks."""
+        if not self.view.worth_keeping or self._keep():
+            self.start(config, seed)
+
+    def _keep(self) -> bool:
+        """Put the run among the player's networks under a free name; False, and a note, if that failed."""
+        runs = self.run.collection
+        if problem := self._save_as(runs.free_name(self.view.suggestion if self.run.runs else runs.rescued_name)):
+            self.context.note(problem)
+        return not problem
+
+    def instead(self, start: Callable[[], None]) -> Transition | None:
+        """Start something in place of the run; ask first what becomes of one that has learnt and has no name."""
+        if not self.view.worth_keeping:
+            start()
+            return None
+        answers: list[tuple[str, Callable[[], None]]] = [
+            (texts.TRAIN_KEEP_FIRST, lambda: start() if self._keep() else None),
+            (texts.TRAIN_LET_GO, start),
+            (texts.TRAIN_STAY, lambda: None),
+        ]
+        return Push(QuestionDialog(self, texts.TRAIN_TAKES_PLACE, "", answers))
+
+    def start(self, config: Any, seed: int, resume: Path | None = None) -> None:
+        """Start a run, or go on with the saved one `resume`, whose first message brings its real settings."""
+        if note := self.run.begin(config, seed, resume=resume, name=self.knobs.name):
+            self.context.note(note)
+        self.cleared()
+        if not resume:
+            self.knobs.set_config(config, seed)
+
+    def cleared(self) -> None:
+        """Show nothing of the runs before."""
+        self._was_running, self._seen = False, None
+        self.view.clear()
+
+    def _go_on_with_last(self) -> None:
+        self.start(self.knobs.config, self.knobs.seed, self.run.collection.unsaved)
+
+    def _save(self) -> Transition | None:
+        """Ask for a name to save the run under."""
+        if not (self.run.alive or self.run.kept):
+            self.context.note(texts.TRAIN_NOTHING)
+            return None
+        return Push(NameDialog(self, texts.NAMING, self.run.collection.free_name(self.view.suggestion), self._save_as))
+
+    def _save_as(self, name: str) -> str:
+        """Save the run under a name; return why that failed, or ""."""
+        try:
+            if note := self.run.save(name):
+                self.context.note(note)
+        except LibraryError as error:
+            return str(error)
+        return ""
+
+    def ask(self, answer: str) -> None:
+        """Lay the panel anew, and put the focus on an answer to what it asks, so that one key gives it."""
+        self._lay()
+        self.form.focus(next(each for each in self.form.widgets if each.label == answer))
+
+    def set_pace(self, index: int) -> None:
+        """Choose one of `PACES`, for later runs too."""
         self.run.set_pace(index)
         self._settings.slow_runs = index == 0
         self.context.apply_settings()
 
-    def _describe_beside(self, column: Column) -> None:
-        """Add the names of the runs that are shown beside this one."""
-        shown = self._beside
-        if not shown.runs:
-            return
-        column.line()
-        for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
-            press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
-            column.widget(RunRow(name, style, press))
-        if not self.run.twin:
-            column.aside(texts.COMPARE_REMOVE)
+    def take_pace(self) -> None:
+        """Go as the last run of the player went."""
+        self.run.set_pace(0 if self._settings.slow_runs else len(PACES) - 1)
 
-    @property
-    def _beside(self) -> Beside:
-        chosen = self.laboratory.chosen
-        return self.landers.beside(chosen.name if chosen else texts.LAB_HEADING)
-
-    def _describe_hint(self, column: Column) -> bool:
-        if self._offers and self.run.first_landing:
-            column.text(texts.LESSON_OFFER.format(slot=self.run.first_landing.slot + 1), size=SMALL, colour=HUMAN)
-            column.words([(texts.LESSON_LOOK, self._look), (texts.LESSON_FLY_ON, self._fly_on)])
-            return True
-        if self._advice.shown:
-            self._advice.describe(column)
-        return self._advice.shown
-
-    # Events and time
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle the network, the charts and the landers, and all that every run has."""
-        if not self.inside.opened:
-            self.charts.follow(event)
-        self.inside.follow(event)
-        outcome = super().handle_event(event)
-        if not self.inside.opened and not self.form.used:
-            self._choose_lander(event)
-        return outcome
-
-    def update(self) -> Transition | None:
-        """Receive the worker's messages, and animate the screen."""
-        run, still = self.run, self._settings.reduced_motion
-        looked = self._listen_to_run()
-        self._advice.silence(bool(self.knobs.settings.waiting) or run.twin is not None)
-        if not run.alive:
-            self._advice.clear()
-        else:
-            self.knobs.show_in_force(run.in_force)
-        self._go_to_moment()
-        if self._news and run.alive and not looked:  # in a frame of its own
-            self._news, looked = False, True
-            self._advice.follow()
-        looked |= self.charts.look(run.history, self._beside, self._caption)
-        self.landers.update(still)
-        self._frame += 1
-        self.laboratory.update(self._frame)
-        self.inside.update()
-        # Tasks that take a millisecond or two take turns, one per frame.
-        self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        self._offer()
-        outcome = self._finish_update()
-        lesson = self.lessons.answer()
-        return outcome or (push("lesson", lesson, self.lessons, self.run.swarm_state) if lesson else None)
-
-    def _listen_to_run(self) -> bool:
-        """Receive the worker's messages; return whether one was about the network."""
-        run = self.run
-        network_state = run.network_state
-        self._listen()
-        if run.network_state is None or run.network_state is network_state:
-            return False
-        if self.rewind.moment is None:
-            self.inside.show(run.network_state)
-        self._news = run.alive and len(run.history) > 0
-        return True
-
-    def _go_to_moment(self) -> None:
-        """Show everything as it was at the moment that is chosen, or as it is now; call it once a frame."""
-        rewind, moment = self.rewind, self.rewind.moment
-        rewind.update()
-        if moment != self.charts.moment:
-            self.charts.go_to(moment)
-            self.inside.show(self.run.network_state if moment is None else rewind.network_state, rewind.row)
-
-    def _caption(self, chart: str) -> str:
-        run = self.run
-        if chart == SCORE and self._beside.paid_otherwise:
-            return texts.LAB_PAID_OTHERWISE
-        hinted = bool(self._advice.hint)
-        return self.caption.read(run.history, run.config, hinted) if run.alive and chart == LANDINGS else ""
-
-    # The run
-
-    def _clear(self) -> None:
-        for part in (self.landers, self.rewind, self._advice, self.charts, self.caption, self.inside):
-            part.clear()
-
-    @property
-    def _worth_keeping(self) -> bool:
-        if self.run.runs:
-            return (self.run.alive or self.run.kept) and len(self.run.history) > 0
-        return self.left is not None and bool(self.left.success)  # it has landed
-
-    @property
-    def _suggestion(self) -> str:
-        return texts.TRAIN_NAME.format(preset=self.knobs.name)
-
-    def _choose_lander(self, event: pygame.event.Event) -> None:
-        """Choose the lander that is clicked, in points; a second click asks for its lesson."""
-        swarm, pressed = self.landers.shown, event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        slot = swarm.slot_at(event.pos) if pressed else None
-        if slot is not None and slot == swarm.chosen:
-            self._ask_why()
-        elif slot is not None:
-            swarm.chosen = slot
-
-    def _ask_why(self) -> None:
-        """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
-        chosen = self.landers.shown.chosen
-        self.lessons.ask(CAREFUL if chosen is None else chosen, self.rewind.moment)
-
-    def _offer(self) -> None:
-        """Offer once in a player's life to stop at a first landing, and look at what is learned from it."""
-        if self.run.first_landing and not self._settings.lesson_offered and self.run.state is WorkerState.RUNNING:
-            self._offers = self._settings.lesson_offered = True
-            self.context.apply_settings()
-            self._lay()
-            self.form.focus(next(each for each in self.form.widgets if each.label == texts.LESSON_LOOK))
-        self._offers &= self.run.alive
-
-    def _look(self) -> None:
-        """Ask for the lesson of the first landing."""
-        assert self.run.first_landing is not None
-        self._offers = False
-        self.lessons.ask(self.run.first_landing.slot, self.run.first_landing.decisions)
-
-    def _fly_on(self) -> None:
-        self._offers = False
-
-    def _open_runs(self) -> Transition:
-        def go_on(folder: Path) -> Transition:
-            self._start(Config(), 0, folder)
-            return Pop()
-
-        return push("runs", train=go_on)
-
-    def _duel(self) -> Transition | None:
-        """Fly against the checkpoint of the moment that is shown."""
-        checkpoint = self.run.history.checkpoint_at(math.inf if self.rewind.moment is None else self.rewind.moment)
-        if checkpoint is None:
-            self.context.note(texts.TRAIN_NO_CHECKPOINT)
+    def _back(self) -> Transition | None:
+        """Go back within the panel or the view; or leave, and if the run has learnt anything, say that it is kept."""
+        if self.view.back():
             return None
-        try:
-            rival = checkpoint.agent(self.run.config)
-        except ValueError as error:
-            self.context.note(str(error))
+        if self.knobs.page:
+            self.knobs.close()
             return None
-        return push("play", rival=rival, rival_name=texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds))
-
-    # An experiment
-
-    def _split(self, sabotage: str) -> None:
-        """Fly a sabotage beside a healthy twin; the run that goes on is put among the player's networks."""
-        config, seed = self.knobs.config, self.knobs.seed
-        changed = sabotaged(config, sabotage)
-        if self.run.twin is None and not self._keep():
-            return
-        self._was_running = False
-        if note := self.run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
-            self.context.note(note)
-        self._clear()
-        self.knobs.set_config(config, seed)
-        self.laboratory.follow()
-        self.laboratory.open()
-
-    def _leave_split(self, experiment: bool) -> None:
-        """End the split view; go on with the healthy run, or with the experiment."""
-        if not experiment:
-            self.run.leave()
-        elif note := self.run.keep_twin():
-            self.context.note(note)
-        self._clear()
-        self.laboratory.page = "result" if self.run.twin else ""
+        if self.run.keeps and self.run.alive and len(self.run.history):
+            self.context.note(texts.TRAIN_KEPT)
+        return Pop()
 
     # The picture
 
-    @property
-    def _back_hint(self) -> str:
-        return texts.HINT_BACK if self.rewind.moment is None else texts.REWIND_BACK
-
-    def _back(self) -> Transition | None:
-        if self.laboratory.page:
-            self.laboratory.close()
-        elif self.inside.opened:
-            self.open(INSIDE)
-        elif self.rewind.moment is not None:
-            self.rewind.clear()
-        else:
-            return super()._back()
-        return None
-
-    def _draw_display(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the swarm and the charts, or the network."""
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw what is seen of the run, and the panel beside it."""
         assert self._layout is not None
         display, box = self._layout.display, self._layout.swarm
-        split = self.run.twin is not None
-        if self.inside.opened:
-            canvas.fill(canvas.rect(*display), NIGHT0)
-            self.inside.draw(canvas)
-            return
-        top = display.top if split else box.bottom  # one swarm fills its box
-        canvas.fill(canvas.rect(display.left, top, display.width, display.bottom - top), NIGHT0)
-        self.charts.draw(canvas)  # first, as the title and both halves say what they have painted
-        self.landers.draw(canvas, alpha, self.charts.landed)
-        canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
-        if not split or box.height > 2 * HEAD:  # or else it would lie on both swarms, which say the same
-            self.draw_title(canvas)
+        self.view.draw(canvas, alpha)
+        if not self.view.fills:
+            canvas.fill(canvas.rect(display.left, box.bottom, display.width, display.bottom - box.bottom), NIGHT0)
+            self.charts.draw(canvas)
+            canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
+            if self.view.titled:
+                self.draw_title(canvas)
+        canvas.fill(canvas.rect(*self._layout.panel), PANEL)
+        self.panel.draw(canvas)
+        if self._foot is not self.panel:
+            self._foot.draw(canvas)
+        self.form.draw(canvas)
+        self.explained.draw(canvas)
+
+    def draw_title(self, canvas: Canvas) -> None:
+        """Draw what the run has come to, over the display."""
+        assert self._layout is not None
+        self.status.draw(canvas, self._layout)
+        if not is_low(self._layout):
+            self.draw_hints(canvas)

@@ -40,7 +40,6 @@ KINDS: dict[str, dict[str, Any]] = {
     "wider pads": {"easing": Easing(wider_pads=True)},
     "wider pads among hills": {"easing": Easing(wider_pads=True), "pads": 3},
     "without a time limit": {"easing": Easing(untimed=True), "mission": "wind"},
-    "an earlier area": {"area": 0},
     "a rung of the ladder": {"spawn": "rung_4"},
 }
 DAY = date(2026, 11, 22).toordinal()

@@ -43,7 +43,7 @@ def late(*_):
 signal.signal(signal.SIGALRM, late)
 
 def act(observation):
-    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    signal.setitimer(signal.ITIMER_REAL, 0.4)
     return 1
 """
 FORKED = """
@@ -110,7 +110,7 @@ def test_what_a_signal_raises_between_two_decisions_is_said_at_the_next(started)
     process = started(RAISES_LATER)
     for _ in range(2):
         assert process.ask(OBSERVATION[:1], LONG).tolist() == [1]
-        time.sleep(0.3)
+        time.sleep(0.8)
         with pytest.raises(PilotError, match=r"^line 5: KeyError: 'a signal came'"):
             process.ask(OBSERVATION[:1], LONG)
 

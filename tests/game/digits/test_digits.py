@@ -155,7 +155,7 @@ def test_words_lead_further_in_once_there_is_a_drawing_which_is_kept(drawing: Dr
     drawing.frames(2)
     assert drawing.said == texts.DIGITS_EMPTY
     draw(drawing, strokes(6))
-    for word, name in (("Look inside", "DigitInsideScene"), ("Train", "DigitTrainingScene")):
+    for word, name in (("Look inside", "DigitInsideScene"), ("Train", "TrainScene")):
         drawing.click(drawing.widget(word).box.center)
         assert drawing.top_name == name
         drawing.key(pygame.K_ESCAPE)

@@ -12,7 +12,6 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import ACTION_NAMES
 from ai.nn import Momentum
-from ai.training.loop import Training
 from game.core import texts
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
@@ -20,6 +19,7 @@ from game.explain.code_listing import draw_listing
 from game.explain.explained import Explained
 from game.explain.q_values import QValues, value_words
 from game.explain.readouts import PILOT
+from game.scenes.learn.pay import config_of
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver
@@ -156,7 +156,7 @@ def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():
     assert not any('"""' in text for _, text in source.lines)
 
 
-@pytest.mark.parametrize("function", [Momentum._fill_step, Training.advance])
+@pytest.mark.parametrize("function", [Momentum._fill_step, config_of])
 def test_remarks_for_tools_are_not_shown(function):
     raw = inspect.getsource(function)
     assert "# noqa" in raw or "# fmt" in raw

@@ -12,7 +12,7 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LanderEnv, Outcome
 from ai.nn import SGD, Adam
-from ai.pilots.shelf import Measured, Shelf
+from ai.pilots.folder import Measured, PilotFolder
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import save
@@ -81,13 +81,13 @@ def flown_with(chapter: NeuronChapter, weights: tuple[float, ...], seconds: floa
     """Fly with these weights; return the longest time in sight without a fall, and the largest tilt after 4 seconds."""
     chapter.restart()
     for number, weight in enumerate(weights):
-        chapter.set(number, weight)
+        chapter.model.set(number, weight)
     tilts = []
     for step in range(round(seconds * SECOND)):
         chapter.update()
         if step > 4 * SECOND:
-            tilts.append(float(chapter.env.tilt[0]))
-    return chapter.best[0], max(tilts)
+            tilts.append(float(chapter.model.env.tilt[0]))
+    return chapter.model.best[0], max(tilts)
 
 
 def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subtests: pytest.Subtests):
@@ -96,19 +96,19 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
         best, tilt = flown_with(chapter, HINT, 15)
         assert best > 14
         assert np.degrees(tilt) < 15
-        chapter.push()
+        chapter.model.push()
         for _ in range(10 * SECOND):
             chapter.update()
-        assert chapter.best[0] > 24
+        assert chapter.model.best[0] > 24
         assert chapter.tried
         assert chapter.verdict() == 2
         assert "−4 for tilt" in chapter.why()
-        values = (float(f"{value:.2f}") for value in chapter.sensed[0])
+        values = (float(f"{value:.2f}") for value in chapter.model.sensed[0])
         written = decimal(sum(value * weight for value, weight in zip(values, HINT, strict=True)), 2, "+")
         assert f"The sum is {written}." in chapter._summed(), "what is written adds up"
-        total = float((chapter.sensed[0] * chapter.layer.weights[:, 0]).sum() + chapter.layer.bias[0])
-        assert chapter.output == pytest.approx(np.tanh(total), abs=1e-6)
-        assert chapter.steer == (1 if chapter.output > 0.5 else 2 if chapter.output < -0.5 else 0)
+        total = float((chapter.model.sensed[0] * chapter.model.layer.weights[:, 0]).sum() + chapter.model.layer.bias[0])
+        assert chapter.model.output == pytest.approx(np.tanh(total), abs=1e-6)
+        assert chapter.model.steer == (1 if chapter.model.output > 0.5 else 2 if chapter.model.output < -0.5 else 0)
     for weights in ((-2.0, 0.0, 1.0), (-4.0, -4.0, 2.0)):
         with subtests.test("with both it stays", weights=weights):
             assert flown_with(chapter, weights, GOAL + 1)[0] > GOAL
@@ -117,7 +117,7 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
             best, tilt = flown_with(chapter, weights, 40)
             assert best < GOAL
             assert chapter.verdict() is None
-            assert chapter.end in ("", "drifted")
+            assert chapter.model.end in ("", "drifted")
             assert np.degrees(tilt) < 40
     with subtests.test("without weights nothing was tried"):
         assert flown_with(chapter, (0.0, 0.0, 0.0), 15)[0] < GOAL
@@ -146,15 +146,15 @@ def test_the_plane_shows_what_the_trained_network_answers(made: Made):
     chapter = made(PlaneChapter)
     chapter.update()
     assert not chapter.tried
-    chapter.choose(len(plane.UNITS) - 1)
+    chapter.model.choose(len(plane.UNITS) - 1)
     for _ in range(plane.SPOKEN):
         chapter.update()
     assert chapter.tried
     assert chapter.verdict() is None, "fewer were not tried"
-    assert chapter.results == {8: chapter.right}
-    assert str(chapter.right) in chapter.why()
+    assert chapter.model.results == {8: chapter.model.right}
+    assert str(chapter.model.right) in chapter.why()
     chapter.restart()
-    assert (chapter.tried, chapter.units) == (False, 0)
+    assert (chapter.tried, chapter.model.units) == (False, 0)
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_the_plane_shows_what_the_trained_network_answers(made: Made):
 )  # fmt: skip
 def test_the_fewest_neurons_that_are_enough_are_the_answer(made: Made, right: dict[int, int], answer: int | None):
     chapter = made(PlaneChapter)
-    chapter.results = right
+    chapter.model.results = right
     assert chapter.verdict() == answer
 
 
@@ -207,47 +207,51 @@ def test_steps_are_too_short_right_or_too_long_on_the_real_cost(made: Made, subt
 
 def test_the_blame_is_that_of_the_real_backward_pass(made: Made):
     chapter = made(BackwardsChapter)
-    network, image = chapter.network, chapter.classifier.shaped(chapter._image)
-    target = np.eye(10, dtype=np.float32)[[chapter.label]]
-    assert chapter.classifier.predict(chapter._image)[0].argmax() == chapter.read_as != chapter.label
-    assert [blame.size for blame in chapter.blames] == [784, 100, 50, 10]
+    network, image = chapter.model.network, chapter.model.classifier.shaped(chapter.model.image)
+    target = np.eye(10, dtype=np.float32)[[chapter.model.label]]
+    assert (
+        chapter.model.classifier.predict(chapter.model.image)[0].argmax()
+        == chapter.model.read_as
+        != chapter.model.label
+    )
+    assert [blame.size for blame in chapter.model.blames] == [784, 100, 50, 10]
     cost = network.cost(network.forward_propagate(image), target)
-    pixel = int(np.abs(chapter.blames[0]).argmax())
+    pixel = int(np.abs(chapter.model.blames[0]).argmax())
     nudged = image.copy()
     nudged[0, pixel] += 1e-2
     risen = network.cost(network.forward_propagate(nudged), target)
-    assert (risen - cost) / 1e-2 == pytest.approx(float(chapter.blames[0][pixel]), rel=0.15)
+    assert (risen - cost) / 1e-2 == pytest.approx(float(chapter.model.blames[0][pixel]), rel=0.15)
     # An output's blame is the slope of its bias before the last activation has bent it.
     bias = network.layers[-2].parameters[1].gradient
-    assert bias == pytest.approx(chapter.blames[3] * (1 - chapter.answers**2), abs=1e-5)
-    assert not chapter.blames[0][image[0] == 0].any(), "nor is such a pixel"
-    for start, _, slope in chapter.links[0]:
+    assert bias == pytest.approx(chapter.model.blames[3] * (1 - chapter.model.answers**2), abs=1e-5)
+    assert not chapter.model.blames[0][image[0] == 0].any(), "nor is such a pixel"
+    for start, _, slope in chapter.model.links[0]:
         assert image[0, start] > 0, "no connection of a pixel without ink is to blame"
         assert slope != 0
     silent = chapter.unit(1, 3)
     for _ in range(3):
         chapter.go_on()
-    assert f"{abs(float(chapter.blames[1][3])):.3f}" in chapter.unit(1, 3).removeprefix(silent)
+    assert f"{abs(float(chapter.model.blames[1][3])):.3f}" in chapter.unit(1, 3).removeprefix(silent)
 
 
 def test_a_step_makes_the_right_answer_likelier_and_moves_about_one_weight_in_five(made: Made):
     chapter = made(BackwardsChapter)
     for _ in range(6):
-        before = float(chapter.odds[chapter.label])
+        before = float(chapter.model.odds[chapter.model.label])
         for _ in range(4):
             chapter.go_on()
-        assert chapter.steps == 0
+        assert chapter.model.steps == 0
         assert chapter.verdict() is None
-        assert not np.any(chapter.network.values != chapter._shipped.network.values)
+        assert not np.any(chapter.model.network.values != chapter.model._shipped.network.values)
         chapter.go_on()
-        assert chapter.steps == 1
-        assert chapter.odds[chapter.label] > before
-        assert 0.1 < chapter.moved / chapter.network.values.size < 0.3
+        assert chapter.model.steps == 1
+        assert chapter.model.odds[chapter.model.label] > before
+        assert 0.1 < chapter.model.moved / chapter.model.network.values.size < 0.3
         assert chapter.verdict() == 1
-        without_ink = chapter.classifier.shaped(chapter._image)[0] == 0
-        first, shipped = chapter.network.layers[0].weights, chapter._shipped.network.layers[0].weights
+        without_ink = chapter.model.classifier.shaped(chapter.model.image)[0] == 0
+        first, shipped = chapter.model.network.layers[0].weights, chapter.model._shipped.network.layers[0].weights
         assert (first[without_ink] == shipped[without_ink]).all()
-        assert f"{chapter.moved:,}" in chapter.why()
+        assert f"{chapter.model.moved:,}" in chapter.why()
         chapter.another()
 
 
@@ -343,23 +347,23 @@ def flown_to_its_end(action: int | None, number: int) -> tuple[Any, list[float],
 
 
 def fly(chapter: ChoiceChapter) -> None:
-    assert chapter.running
-    while not chapter.over:
+    assert chapter.model.running
+    while not chapter.model.over:
         chapter.update()
-    assert not chapter.running
+    assert not chapter.model.running
 
 
 def test_bars_begin_at_0_and_keep_their_scale_when_a_result_arrives(made: Made):
     chapter = made(ChoiceChapter)
     before = [line.bars[0] for line in chapter._lines()]
     assert [start for start, _ in before] == [0.0] * 6
-    for (_, end), value in zip(before, chapter.values.tolist(), strict=True):
-        assert end == pytest.approx(before[0][1] * value / chapter.values[0], rel=1e-5)
-    chapter.begin_with(chapter.worst)
+    for (_, end), value in zip(before, chapter.model.values.tolist(), strict=True):
+        assert end == pytest.approx(before[0][1] * value / chapter.model.values[0], rel=1e-5)
+    chapter.begin_with(chapter.model.worst)
     fly(chapter)
     lines = chapter._lines()
     assert [line.bars[0] for line in lines] == before
-    assert [line.bars[1][1] > 0 for line in lines] == [action == chapter.worst for action in range(6)]
+    assert [line.bars[1][1] > 0 for line in lines] == [action == chapter.model.worst for action in range(6)]
     assert from_zero(-10.0, -50.0, 50.0) == (0.4, 0.5)
     assert from_zero(0.0, -50.0, 50.0) == (0.5, 0.5)
 
@@ -367,22 +371,22 @@ def test_bars_begin_at_0_and_keep_their_scale_when_a_result_arrives(made: Made):
 def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
     chapter = made(ChoiceChapter)
     for number in range(3):
-        for action in (chapter.best, chapter.worst):
+        for action in (chapter.model.best, chapter.model.worst):
             chapter.begin_with(action)
             fly(chapter)
             first, pays, safely = flown_to_its_end(action, number)
-            np.testing.assert_allclose(chapter.values, first.points[0], rtol=1e-5)
-            came = sum(chapter.agent.config.discount**late * pay for late, pay in enumerate(pays))
+            np.testing.assert_allclose(chapter.model.values, first.points[0], rtol=1e-5)
+            came = sum(chapter.model.agent.config.discount**late * pay for late, pay in enumerate(pays))
             # The chapter adds the pay of each physics step, the other that of each decision of four.
-            assert chapter.results[action].points == pytest.approx(came, abs=0.5)
-            assert chapter.results[action].landed == safely
+            assert chapter.model.results[action].points == pytest.approx(came, abs=0.5)
+            assert chapter.model.results[action].landed == safely
         if number < 2:
             chapter.turn()
-    best, worst = chapter.results[chapter.best], chapter.results[chapter.worst]
+    best, worst = chapter.model.results[chapter.model.best], chapter.model.results[chapter.model.worst]
     assert best.landed
     assert (texts.LEARN_CHOICE_SURPRISE in chapter.why()) == (best.points < worst.points)
     assert chapter.verdict() == (0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2)
-    chapter.results[chapter.worst] = worst._replace(points=best.points + 1.0)
+    chapter.model.results[chapter.model.worst] = worst._replace(points=best.points + 1.0)
     assert texts.LEARN_CHOICE_SURPRISE in chapter.why()
     assert chapter.tried
     chapter.turn()
@@ -468,10 +472,10 @@ def test_what_was_done_with_ones_own_is_ticked_and_nothing_before(context: Conte
     assert done() == {"train"}, "another network flew"
     records.keep(landed(), time.time(), network="mine")
     assert done() == {"train", "hand"}
-    shelf = Shelf(context.user_dir)
-    shelf.keep(Measured("fall", 0.5))
+    own_pilots = PilotFolder(context.user_dir)
+    own_pilots.keep(Measured("fall", 0.5))
     assert done() == {"train", "hand"}, "it lands too seldom"
-    shelf.keep(Measured("land", 0.95))
+    own_pilots.keep(Measured("land", 0.95))
     assert done() == {"train", "hand", "file"}
 
 
@@ -497,6 +501,6 @@ def test_no_lander_is_cut_at_the_upper_edge(made: Made, monkeypatch: pytest.Monk
             views: list[Any] = []
             patch.setattr(choice, "draw_ground", lambda _, __, seen, views=views: views.append(seen))
             chapter.draw(canvas, box, 1.0)
-        ((_, y),) = views[0].points([chapter.env.position[0]])
+        ((_, y),) = views[0].points([chapter.model.env.position[0]])
         assert y - 1.3 * np.ptp(views[0].points([(0.0, 0.0), (0.0, 1.0)])[:, 1]) >= box.top
         chapter.turn()

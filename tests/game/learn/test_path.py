@@ -77,7 +77,7 @@ def test_a_chapter_is_done_once_a_try_has_answered_its_question(open_game: Open,
     driver = open_game(ChapterScene, "neuron")
     scene, progress, answers = driver.top, Progress(driver.app.context.settings), texts.LEARN_ANSWERS["neuron"]
     driver.press_on(answers[0])
-    scene.chapter.set(0, -1.0)
+    scene.chapter.model.set(0, -1.0)
     driver.skip(400)
     said = written(driver, monkeypatch)
     assert scene.finding in said, "a try that answers nothing is told, too"
@@ -85,7 +85,7 @@ def test_a_chapter_is_done_once_a_try_has_answered_its_question(open_game: Open,
     assert not progress.done("neuron")
     driver.press_on(texts.LEARN_NEURON_HINT)
     driver.skip(300)
-    while scene.chapter.seconds < 10.1:
+    while scene.chapter.model.seconds < 10.1:
         driver.skip()
     assert texts.LEARN_NEURON_FLIGHT["there"].format(seconds=10) in written(driver, monkeypatch), "said at once"
     assert progress.done("neuron")
@@ -193,7 +193,7 @@ def test_a_finding_comes_by_itself_and_leaving_ends_a_run(open_game: Open, conte
     driver = open_game(ChapterScene, "choice")
     scene = driver.top
     scene.begin()
-    for action in (scene.chapter.worst, scene.chapter.best):
+    for action in (scene.chapter.model.worst, scene.chapter.model.best):
         scene.chapter.begin_with(action)
         driver.skip(500)
     assert Progress(driver.app.context.settings).done("choice")

@@ -14,7 +14,7 @@ from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.challenge import Race
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.scene import TrainScene
 from game.ui.context import Context
 from tests.game.play.ends import TOO_FAST, end
 from tests.support.driver import Driver
@@ -50,7 +50,7 @@ def paste(driver: Driver, text: str, clipboard: list[str]) -> None:
     driver.frames(2)
 
 
-@pytest.mark.parametrize("scene", [MenuScene, PlayScene, DigitTrainingScene])
+@pytest.mark.parametrize("scene", [MenuScene, PlayScene, TrainScene])
 def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboard: list[str], scene):
     driver = open_game(scene)
     paste(driver, f"Beat this: “{codes.code(record)}”", clipboard)
@@ -79,7 +79,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(
     path = tmp_path / "strange.bin"
     refused = texts.CODE_REFUSED
     for content, why in (
-        (b"tranq3-000-over", refused["damaged"]), (b"tranq3-000", refused["cut"]),
+        (b"tranq4-000-over", refused["damaged"]), (b"tranq4-000", refused["cut"]),
         (b"tranq-000-over", refused["older"]), (b"hello", refused["none"]), (b"\xff\xfe", refused["none"]),
         (b"x" * 2_000_000, ""),
     ):  # fmt: skip
@@ -97,7 +97,7 @@ def test_what_is_no_flight_is_refused_in_a_sentence(
     driver.key(pygame.K_v, pygame.KMOD_LCTRL)
     assert (driver.top_name, driver.said) == ("MenuScene", texts.CODE_PASTE_EMPTY)
     monkeypatch.setattr(pygame.scrap, "get_text", lambda: clipboard[-1])
-    paste(driver, "tranq3-000", clipboard)
+    paste(driver, "tranq4-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=refused["cut"])
 
 

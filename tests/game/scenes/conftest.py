@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from game.core.scene import Scene
-from game.scenes.train.base import MORE
-from game.scenes.train.scene import TrainScene
+from game.scenes.train.scene import MORE, TrainScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support import inline_worker
@@ -23,13 +22,13 @@ def watching(open_game: Callable[..., Driver], context: Context, tmp_path: Path)
 
 
 @pytest.fixture
-def small_run() -> tuple[type[Scene], object]:
+def small_run() -> tuple[Callable[[Context], Scene], object]:
     """The scene that is opened and what it will train; files about another scene have a fixture of this name."""
     return TrainScene, LANDERS
 
 
 @pytest.fixture
-def beside(open_game: Callable[..., Driver], small_run: tuple[type[Scene], object]) -> Driver:
+def beside(open_game: Callable[..., Driver], small_run: tuple[Callable[[Context], Scene], object]) -> Driver:
     """The screen with all its words, and processes of their own for its runs."""
     scene, config = small_run
     driver = open_game(scene)

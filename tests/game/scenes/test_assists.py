@@ -127,8 +127,7 @@ class Switch:
         for _ in range(most):
             stops = app.scan.stops(self.game.top, app.canvas)
             stop = stops[app.scan.index % len(stops)]
-            name = stop.hint.meaning if stop.hint else stop.widget.label
-            if name == words:
+            if stop.widget.label == words:
                 self.game.skip(14)  # a hand needs a moment
                 self.press()
                 return

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -15,21 +16,23 @@ from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.validation import Confusion
 from ai.files import state_folder
 from game.core import texts
+from game.core.scene import Scene
 from game.core.shelf import LibraryError
 from game.core.worker import WorkerState
-from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.digits import digit_training
 from game.training.library import DigitModels
 from game.training.run import TrainingRun
 from game.training.run_kind import DIGITS
 from game.training.run_settings import knob_descriptions
+from game.ui.context import Context
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import DIGITS as SMALL
 
 
 @pytest.fixture
-def small_run() -> tuple[type[DigitTrainingScene], object]:
-    return DigitTrainingScene, SMALL
+def small_run() -> tuple[Callable[[Context], Scene], object]:
+    return digit_training, SMALL
 
 
 def confusion() -> Confusion:
@@ -68,7 +71,7 @@ def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
     train.wait(lambda: scene.run.confusion and len(scene.run.history))
     assert scene.run.config == SMALL
     assert scene.run.confusion.table.sum() == 2_000
-    assert scene.matrix.confusion is scene.run.confusion
+    assert scene.view.matrix.confusion is scene.run.confusion
     train.key(pygame.K_RETURN)
     train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     train.frames(5)
@@ -160,32 +163,32 @@ def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driv
 
 def test_nothing_stands_for_what_is_misread_until_something_was_read(train: Driver):
     scene = train.top
-    assert scene.matrix not in scene.form.widgets
+    assert scene.view.matrix not in scene.form.widgets
     scene.run.confusion = confusion()
     train.frames(3)
-    assert scene.matrix in scene.form.widgets
+    assert scene.view.matrix in scene.form.widgets
     train.write_in("largest")
     train.frames(3)
-    assert scene.matrix not in scene.form.widgets, "its digits would lie on each other"
+    assert scene.view.matrix not in scene.form.widgets, "its digits would lie on each other"
 
 
 def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     scene = train.top
     scene.run.confusion = confusion()
     train.frames(2)
-    assert scene.matrix.cell == (4, 9)
-    box, pitch = scene.matrix.box, scene.matrix.pitch
+    assert scene.view.matrix.cell == (4, 9)
+    box, pitch = scene.view.matrix.box, scene.view.matrix.pitch
     train.move((box.left + 1.5 * pitch, box.top + 7.5 * pitch))
-    assert scene.matrix.cell == (7, 1)
+    assert scene.view.matrix.cell == (7, 1)
     scene.run.confusion = confusion()
     train.frames(2)
-    assert scene.matrix.cell == (7, 1)
+    assert scene.view.matrix.cell == (7, 1)
     train.resize((960, 540))
     train.key(pygame.K_UP)
     train.key(pygame.K_LEFT)
-    assert scene.matrix.cell == (6, 0)
+    assert scene.view.matrix.cell == (6, 0)
     train.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    assert scene.matrix.cell == (7, 0)
-    assert scene.form.focused is scene.matrix
+    assert scene.view.matrix.cell == (7, 0)
+    assert scene.form.focused is scene.view.matrix
     train.keys(*[pygame.K_RIGHT] * 10)
-    assert scene.form.focused is not scene.matrix, "beyond the edge the focus goes on"
+    assert scene.form.focused is not scene.view.matrix, "beyond the edge the focus goes on"

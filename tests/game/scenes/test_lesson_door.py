@@ -20,7 +20,7 @@ def start(driver: Driver) -> None:
 
 def place_of(driver: Driver, slot: int) -> tuple[float, float]:
     """Where a lander stands on the screen."""
-    swarm = driver.top.landers.now
+    swarm = driver.top.view.swarms.now
     x, y = next(
         (x, y) for y in range(0, 430, 4) for x in range(0, 830, 4) if swarm.slot_at((x, y)) == slot
     )  # fmt: skip
@@ -56,7 +56,7 @@ def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_al
     scene = train.top
     place = place_of(train, 2)
     train.click(place)
-    assert scene.landers.now.chosen == 2
+    assert scene.view.swarms.now.chosen == 2
     assert train.top is scene
     train.click(place)
     train.wait(lambda: isinstance(train.top, LessonScene))
@@ -70,7 +70,7 @@ def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_al
     assert pointer.typing
     pointer.place.update(place)
     train.key(pygame.K_RETURN)
-    assert scene.landers.now.chosen == 3
+    assert scene.view.swarms.now.chosen == 3
     train.key(pygame.K_RETURN)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 3
@@ -85,14 +85,14 @@ def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train:
     train.frames(30)
     scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.keys(*[pygame.K_LEFT] * 4)
-    moment, now = scene.rewind.moment, scene.run.swarm_state.decisions
+    moment, now = scene.view.rewind.moment, scene.run.swarm_state.decisions
     assert moment is not None
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert abs(train.top.lesson.decisions - moment) < abs(train.top.lesson.decisions - now)
     train.frames(3)
     train.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
-    assert scene.rewind.moment is None
+    assert scene.view.rewind.moment is None
     train.frames(3)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))

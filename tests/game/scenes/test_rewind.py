@@ -11,8 +11,8 @@ import pytest
 from ai.training.history import Checkpoint
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.train.base import CHARTS, INSIDE
-from game.scenes.train.scene import TrainScene
+from game.scenes.train.landers import INSIDE
+from game.scenes.train.scene import CHARTS, TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -46,16 +46,16 @@ def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
 def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     scene = driver.top
     run, history = scene.run, scene.run.history
-    assert scene.rewind.moment == moment
+    assert scene.view.rewind.moment == moment
     # Everything is one of the messages of the run, the nearest that was kept.
-    assert scene.landers.past.swarm_state is scene.rewind.swarm_state is run.swarms.nearest(moment)
-    assert scene.rewind.swarm_state.decisions == moment
-    assert scene.rewind.network_state is run.networks.nearest(moment)
-    assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
+    assert scene.view.swarms.past.swarm_state is scene.view.rewind.swarm_state is run.swarms.nearest(moment)
+    assert scene.view.rewind.swarm_state.decisions == moment
+    assert scene.view.rewind.network_state is run.networks.nearest(moment)
+    assert np.array_equal(scene.view.inside.network.values, scene.view.rewind.network_state.values)
     row = int(np.abs(history["decisions"] - moment).argmin())
-    assert scene.rewind.row == row
-    assert scene.inside.paid == pytest.approx(history.parts[row])
-    line = scene._status.line
+    assert scene.view.rewind.row == row
+    assert scene.view.inside.paid == pytest.approx(history.parts[row])
+    line = scene.status.line
     assert f"{moment:,}" in line
     seconds = float(np.interp(moment, history["decisions"], history["seconds"]))
     assert scene.charts.charts[0].marker == pytest.approx(seconds)
@@ -65,7 +65,7 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     scene = train.top
     train.click(halfway(train, 3))
     train.frames(2)
-    moment = scene.rewind.moment
+    moment = scene.view.rewind.moment
     assert moment is not None
     assert 0.2 < moment / scene.run.history["decisions"][-1] < 0.8
     assert_all_of_it_is_at(train, moment)
@@ -73,7 +73,7 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     train.press_on(texts.TRAIN_RESUME)
     train.wait(lambda: len(scene.run.history) > points + 3)
     assert scene.run.state is WorkerState.RUNNING
-    assert scene.rewind.moment == moment
+    assert scene.view.rewind.moment == moment
     assert_all_of_it_is_at(train, moment)
 
 
@@ -82,18 +82,18 @@ def test_a_drag_stays_with_its_chart_and_a_word_or_its_end_leads_to_now(train: D
     x, y = halfway(train, 2)
     train.move((x, y))
     train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
-    first = scene.rewind.moment
-    train.move((x - 20, y - 120))
-    assert scene.rewind.moment is not None
+    first = scene.view.rewind.moment
+    train.move((x - 60, y - 120))
+    assert scene.view.rewind.moment is not None
     assert first is not None
-    assert scene.rewind.moment < first
+    assert scene.view.rewind.moment < first
     train.move((x + 600, y))
-    assert scene.rewind.moment is None
+    assert scene.view.rewind.moment is None
     train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y)), button=1)
     train.click(halfway(train))
     train.frames(2)
     train.click(train.widget(texts.REWIND_NOW).box.center)
-    assert scene.rewind.moment is None
+    assert scene.view.rewind.moment is None
     assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
 
 
@@ -108,22 +108,22 @@ def test_left_and_right_step_through_the_run_and_back_leads_to_now(train: Driver
     moments = []
     for _ in range(4):
         player.press("left")
-        moments.append(scene.rewind.moment)
+        moments.append(scene.view.rewind.moment)
     assert None not in moments
     assert sorted(set(moments), reverse=True) == moments
     assert_all_of_it_is_at(train, moments[-1])
     player.press("right")
-    assert scene.rewind.moment == moments[-2]
+    assert scene.view.rewind.moment == moments[-2]
     if large:
         player.press("back")
         train.frames(1)
-        assert not scene.inside.opened
-        assert scene.rewind.moment == moments[-2]
+        assert not scene.view.inside.opened
+        assert scene.view.rewind.moment == moments[-2]
     player.press("back")
     train.frames(2)
     assert train.top is scene
-    assert scene.rewind.moment is None
-    assert np.array_equal(scene.inside.network.values, scene.run.network_state.values)
+    assert scene.view.rewind.moment is None
+    assert np.array_equal(scene.view.inside.network.values, scene.run.network_state.values)
     assert scene.charts.charts[0].marker is None
 
 
@@ -133,11 +133,11 @@ def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
     train.frames(1)
     left, right = timeline(train)._track
     train.click(((left + right) / 2, timeline(train).box.centery))
-    assert scene.rewind.share == pytest.approx(0.5, abs=0.1)
+    assert scene.view.rewind.share == pytest.approx(0.5, abs=0.1)
     train.frames(2)
-    assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
+    assert np.array_equal(scene.view.inside.network.values, scene.view.rewind.network_state.values)
     train.click((right, timeline(train).box.centery))
-    assert scene.rewind.moment is None
+    assert scene.view.rewind.moment is None
 
 
 def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: Driver) -> None:
@@ -146,12 +146,12 @@ def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: D
     train.frames(5)
     train.click(halfway(train))
     train.frames(2)
-    assert scene.rewind.moment is not None
-    assert_all_of_it_is_at(train, scene.rewind.moment)
-    assert texts.REWIND_AT.split("{")[0] in scene.rewind.words
+    assert scene.view.rewind.moment is not None
+    assert_all_of_it_is_at(train, scene.view.rewind.moment)
+    assert texts.REWIND_AT.split("{")[0] in scene.view.rewind.words
     train.press_on(texts.TRAIN_START)
     train.frames(2)
-    assert scene.rewind.moment is None
+    assert scene.view.rewind.moment is None
     assert scene.run.swarms.moments[-1] < ended
 
 
@@ -166,15 +166,15 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     scene = driver.top
     driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 100)
     driver.frames(14)
-    scene.rewind.go_to(decisions / 2)
+    scene.view.rewind.go_to(decisions / 2)
     driver.frames(2)
-    assert scene.rewind.swarm_state is scene.landers.past.swarm_state is None
-    checkpoint = scene.run.history.checkpoint_at(scene.rewind.moment)
-    assert np.array_equal(scene.inside.network.values, checkpoint.values)
+    assert scene.view.rewind.swarm_state is scene.view.swarms.past.swarm_state is None
+    checkpoint = scene.run.history.checkpoint_at(scene.view.rewind.moment)
+    assert np.array_equal(scene.view.inside.network.values, checkpoint.values)
     began = scene.run.swarms.begins
     assert began is not None
-    scene.rewind.go_to(began + 100)
-    assert scene.rewind.swarm_state
+    scene.view.rewind.go_to(began + 100)
+    assert scene.view.rewind.swarm_state
 
 
 def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Driver]) -> None:
@@ -184,10 +184,10 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     driver.click((200, 540))
     driver.form.focus(driver.the(Scrubber))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
-    assert scene.rewind.moment is None
-    scene.rewind.go_to(100)
-    scene.rewind.go_to_share(0.5)
-    assert scene.rewind.moment is None
+    assert scene.view.rewind.moment is None
+    scene.view.rewind.go_to(100)
+    scene.view.rewind.go_to_share(0.5)
+    assert scene.view.rewind.moment is None
 
 
 @pytest.mark.parametrize("values", [np.zeros(0, np.float32), np.zeros(7, np.float32), None])
@@ -208,14 +208,14 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     if values is not None:  # a checkpoint of another network
         history.append(Checkpoint(1.0, 100, 0.0, values))
     driver.frames(14)
-    driver.top.rewind.go_to(10.0)
+    driver.top.view.rewind.go_to(10.0)
     driver.frames(14)
-    assert driver.top.rewind.moment == 300
-    assert driver.top.rewind.swarm_state is None
-    assert driver.top.inside.network is None or driver.top.inside.shown is None
+    assert driver.top.view.rewind.moment == 300
+    assert driver.top.view.rewind.swarm_state is None
+    assert driver.top.view.inside.network is None or driver.top.view.inside.shown is None
     driver.top.open(INSIDE)
     driver.frames(3)
     driver.form.focus(timeline(driver))
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
-    assert driver.top.rewind.moment is None
+    assert driver.top.view.rewind.moment is None
     assert isinstance(driver.top, TrainScene)

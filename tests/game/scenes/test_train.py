@@ -41,7 +41,7 @@ def test_start_pause_and_go_on(beside: Driver) -> None:
     learn(beside)
     scene = beside.top
     assert scene.run.state is WorkerState.RUNNING
-    assert len(scene.landers.now.swarm_state.outcome) == 4
+    assert len(scene.view.swarms.now.swarm_state.outcome) == 4
     beside.key(pygame.K_RETURN)
     beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(20)
@@ -133,7 +133,7 @@ def test_start_keeps_what_was_left_if_it_lands(
     monkeypatch.setattr(Library, "rescued", lambda library: (run := left(library)) and replace(run, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
-    library = driver.top.library
+    library = driver.top.run.collection
     learn(driver)
     assert len(library.runs()) == (share is not None)
 
@@ -143,9 +143,9 @@ def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver)
     scene = train.top
     scene.knobs.turn("n_step", 3)
     train.frames(2)
-    train.press_on(texts.KNOBS_APPLY)
-    train.wait(lambda: scene.library.runs() and scene.run.config.n_step == 3)
-    (kept,) = scene.library.runs()
+    train.press_on(texts.TRAIN_ANEW)
+    train.wait(lambda: scene.run.collection.runs() and scene.run.config.n_step == 3)
+    (kept,) = scene.run.collection.runs()
     assert not kept.problem
     assert kept.decisions > 0
 
@@ -154,7 +154,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     learn(train)
     scene = train.top
     save_as(train, "mine")
-    train.wait(scene.library.runs)
+    train.wait(scene.run.collection.runs)
     train.press_on(texts.TRAIN_RUNS)
     train.frames(2)
     train.press_on(texts.RUN_TRAIN)
@@ -166,7 +166,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
 def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> None:
     learn(train)
     scene = train.top
-    (scene.library.folder / "mine").mkdir()
+    (scene.run.collection.folder / "mine").mkdir()
     train.press_on(texts.TRAIN_SAVE)
     train.the(EntryRow).text = "mine"
     train.key(pygame.K_RETURN)
@@ -174,7 +174,7 @@ def test_a_name_that_is_taken_is_reported_and_can_be_changed(train: Driver) -> N
     train.post(pygame.TEXTINPUT, text="M2")
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    train.wait(scene.library.runs)
+    train.wait(scene.run.collection.runs)
 
 
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
@@ -205,8 +205,8 @@ def test_a_run_is_started_named_found_and_left_without_a_mouse(train: Driver) ->
     assert train.top_name == "NameDialog"
     press("confirm")
     assert train.top is scene
-    train.wait(scene.library.runs)
-    (run,) = scene.library.runs()
+    train.wait(scene.run.collection.runs)
+    (run,) = scene.run.collection.runs()
     assert (run.problem, run.seed) == ("", 3)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
@@ -217,7 +217,7 @@ def test_a_dead_worker_is_reported_and_its_run_can_still_be_saved(beside: Driver
     beside.unseen = True
     learn(beside)
     scene = beside.top
-    beside.wait(lambda: scene.library.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
+    beside.wait(lambda: scene.run.collection.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
     for child in active_children():
         child.kill()
     beside.wait(lambda: scene.run.state is WorkerState.FAILED)

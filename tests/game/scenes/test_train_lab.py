@@ -2,12 +2,12 @@
 
 import os
 import signal
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pygame
 import pytest
 
 from ai.files import read_json
@@ -17,10 +17,10 @@ from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.train.base import KNOBS
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train.knob import Knob
 from game.scenes.train.laboratory import FILE, Chosen, came_words, has_recovered, measured, why
-from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import AHEAD, TrainingRun
 from game.ui.rows import RunRow
@@ -40,6 +40,9 @@ def press_try(driver: Driver) -> None:
     driver.press_on(texts.TRAIN_EXPERIMENTS)
     driver.press_on(texts.SABOTAGES["rate_times_100"][0])
     driver.press_on(texts.LAB_SKIP)
+    if isinstance(driver.top, QuestionDialog):
+        driver.press_on(texts.TRAIN_KEEP_FIRST)
+    driver.frames(2)
 
 
 def split(driver: Driver) -> None:
@@ -61,17 +64,18 @@ def test_a_knob_without_effect_gives_way_to_the_one_that_acts(train: Driver) -> 
     assert knobs(train)[0] == "learning_rate"
 
 
-def test_three_knobs_come_first_and_a_page_on_demand_which_is_remembered(
-    train: Driver, open_game: Callable[..., Driver]
-) -> None:
+def test_three_knobs_come_first_and_a_page_on_demand(train: Driver) -> None:
     assert knobs(train) == ["learning_rate", "epsilon_end", "discount"]
-    train.press_on(texts.TRAIN_MORE_KNOBS[0])
+    train.press_on(texts.TRAIN_MORE_KNOBS)
     assert len(knobs(train)) == 16
-    assert KNOBS in train.saved()["opened"]
-    again = open_game(TrainScene)
-    assert len(knobs(again)) == 16
-    again.press_on(texts.TRAIN_MORE_KNOBS[1])
-    assert len(knobs(again)) == 3
+    chapters = {label for each in train.form.widgets if (label := each.label).startswith("Learn: ")}
+    assert len(chapters) >= 5, "doors to the chapters that explain them"
+    train.press_on(sorted(chapters)[0])
+    train.frames(2)
+    assert isinstance(train.top, ChapterScene)
+    train.key(pygame.K_ESCAPE)
+    train.key(pygame.K_ESCAPE)
+    assert len(knobs(train)) == 3
 
 
 # Experiments
@@ -113,7 +117,7 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     assert run.state is WorkerState.RUNNING
     assert "SIGKILL" in run.twin.problem
     beside.frames(21)
-    assert beside.top.laboratory.came is None, "that is no verdict on the experiment"
+    assert beside.top.view.laboratory.came is None, "that is no verdict on the experiment"
     beside.press_on(texts.LAB_KEEP_EXPERIMENT)
     assert beside.said == texts.SPLIT_OVER
     assert run.twin is not None
@@ -166,21 +170,27 @@ def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(tra
 
 def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
     press = train.press_on
-    scene, laboratory = train.top, train.top.laboratory
+    scene, laboratory = train.top, train.top.view.laboratory
     press(texts.TRAIN_EXPERIMENTS)
     train.frames(2)
     press(texts.SABOTAGES["no_replay"][0])
-    assert scene.laboratory.page == "guess"
+    assert scene.view.laboratory.page == "guess"
     assert not scene.run.twin
     train.frames(2)
     press(texts.LAB_GUESSES["never"])
-    assert scene.laboratory.page == "result"
+    assert scene.view.laboratory.page == "result"
     assert laboratory.chosen.guess == "never"
     assert scene.run.twin.config == sabotaged(SMALL, "no_replay")
     train.wait(lambda: len(scene.run.twin.history) >= 2 and len(scene.run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
     assert laboratory.said["came"] == texts.LAB_TOO_EARLY
+    laboratory.came = "never"
+    train.frames(2)
+    press(next(each.label for each in train.form.widgets if each.label.startswith("Next experiment")))
+    assert (laboratory.page, laboratory.chosen) == ("guess", Chosen("no_exploration"))
+    laboratory.came, laboratory.page = None, "result"
+    train.frames(2)
     press(texts.LAB_KNOBS)
     assert knobs(train)
     press(texts.TRAIN_EXPERIMENTS)
@@ -193,11 +203,11 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
 def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
     train: Driver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    train.top.laboratory.chosen = Chosen("no_replay", "never")
-    laboratory, healthy = train.top.laboratory, recorded("modern healthy")
+    train.top.view.laboratory.chosen = Chosen("no_replay", "never")
+    laboratory, healthy = train.top.view.laboratory, recorded("modern healthy")
     run = SimpleNamespace(config=healthy.config, history=History(), twin=None)
     run.twin = SimpleNamespace(config=healthy.config, history=History(), problem="")
-    laboratory._run, laboratory._landed = run, lambda: (80, 12)
+    laboratory._run, laboratory._landed = run, (80, 12)
     said: list[tuple[str, str]] = []
     for whole, other in zip(growing("modern healthy"), growing("modern sabotage no_shaping"), strict=False):
         run.history, run.twin.history = whole.history, other.history
@@ -262,14 +272,15 @@ def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> 
         train.frames(1)
     assert scene.knobs.config.layer_normalisation is False, "flown alone, it is the run's own setting"
     assert scene.run.twin.config.discount == 0.8
-    assert scene.laboratory.chosen.guess is None
+    assert scene.view.laboratory.chosen.guess is None
 
 
-def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
-    for came in (None, *VERDICTS):
-        assert bool(why(came, "no_replay")) == (came not in (None, "as_well")), came
-    assert why("later", "no_replay", recovered=True) == texts.LAB_RECOVERED != why("later", "no_replay")
-    assert not why("as_well", "no_replay", recovered=True)
+def test_why_a_part_matters_is_said_with_every_verdict() -> None:
+    for came in VERDICTS:
+        assert texts.SABOTAGE_WHY["no_replay"] in why(came, "no_replay"), came
+    assert why("as_well", "no_replay") != why("later", "no_replay"), "there it was not missed"
+    assert not why(None, "no_replay")
+    assert why("later", "no_replay", recovered=True) == texts.LAB_RECOVERED
     assert has_recovered([91, 92])
     assert not has_recovered([91, 90])
     assert has_recovered([91, 90], was=True), "no word comes and goes by chance"
@@ -279,7 +290,7 @@ def test_why_a_part_matters_is_said_only_where_it_was_missed() -> None:
     assert texts.LAB_AS_GUESSED in came_words("never", "never")
 
 
-def test_two_lines_in_every_chart_and_both_shares_are_those_of_the_painted_chart(
+def test_two_lines_in_every_chart_and_both_shares_are_those_of_the_charts(
     train: Driver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     split(train)
@@ -289,7 +300,7 @@ def test_two_lines_in_every_chart_and_both_shares_are_those_of_the_painted_chart
         written.clear()
         train.frames(1)
         shares = [each for each in written if each.endswith(texts.SPLIT_LANDED.format(percent=""))]
-        landed = [share for share in train.top.charts.landed if share is not None]
+        landed = [share for share in train.top.landed if share is not None]
         assert shares == [texts.SPLIT_LANDED.format(percent=share) for share in landed]
     assert {len(chart.runs) for chart in train.top.charts.charts} == {2}
 
@@ -299,19 +310,19 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     scene, run = train.top, train.top.run
     train.wait(lambda: min(len(run.swarms.moments), len(run.twin.swarms.moments)) >= 3)
     train.frames(2)
-    scene.rewind.go_to(float(run.swarms.moments[0]))
+    scene.view.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
-    assert scene.rewind.moment == run.swarms.moments[0]
-    shown = [swarm.swarm_state.decisions for swarm in scene.landers.pair]
-    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.rewind.moment).decisions]
+    assert scene.view.rewind.moment == run.swarms.moments[0]
+    shown = [swarm.swarm_state.decisions for swarm in scene.view.swarms.pair]
+    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.view.rewind.moment).decisions]
     assert shown[1] < run.twin.swarm_state.decisions
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
-    assert scene.landers.pair[1].swarm_state is run.twin.swarm_state
+    assert scene.view.swarms.pair[1].swarm_state is run.twin.swarm_state
 
 
 def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
-    train.top.laboratory.open()
+    train.top.view.laboratory.open()
     train.frames(2)
     shown = [each.label for each in train.form.widgets]
     shares = read_json(FILE)["shares"]

@@ -12,10 +12,10 @@ from ai.training.history import History
 from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import Canvas
-from game.scenes.train import digits, scene
-from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE
-from game.scenes.train.digits import DigitTrainingScene
-from game.scenes.train.scene import TrainScene
+from game.scenes.train import scene
+from game.scenes.train.digits import digit_training
+from game.scenes.train.landers import INSIDE
+from game.scenes.train.scene import CHARTS, MORE, TrainScene
 from game.training.library import DigitModels, Library
 from game.training.record import put_beside
 from game.ui.context import Context
@@ -25,7 +25,7 @@ from tests.support.driver import Driver
 from tests.support.written import Written
 
 WINDOWS = (((1280, 720), "largest"), ((800, 600), "normal"), ((720, 1280), "normal"))
-SCENES = (TrainScene, DigitTrainingScene)
+SCENES = (TrainScene, digit_training)
 
 
 def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[str], list[str]]:
@@ -63,7 +63,7 @@ def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
         assert name in driver.saved()["opened"].split()
     again = open_game(TrainScene)
     again.frames(1)
-    assert again.top.inside.opened
+    assert again.top.view.inside.opened
     again.key(pygame.K_ESCAPE)
     again.frames(1)
     assert len(again.top.charts.charts) == 4
@@ -83,7 +83,7 @@ def test_no_text_lies_on_another_in_any_window(
     for size, text_size in WINDOWS:
         settings.text_size = text_size
         driver.resize(size)
-        for opened in ("", f"{CHARTS} {KNOBS} {MORE}", INSIDE):
+        for opened in ("", f"{CHARTS} {MORE}", INSIDE):
             with subtests.test(size=size, text_size=text_size, opened=opened):
                 settings.opened = ""
                 for name in opened.split():
@@ -119,14 +119,14 @@ def held(folder: Path) -> bool:
     return not all(free)
 
 
-@pytest.mark.parametrize(("module", "first"), list(zip((scene, digits), SCENES, strict=True)))
+@pytest.mark.parametrize("first", SCENES)
 def test_one_that_cannot_be_built_lets_go_of_the_place_of_its_runs(
-    context: Context, monkeypatch: pytest.MonkeyPatch, module: Any, first: type[Scene]
+    context: Context, monkeypatch: pytest.MonkeyPatch, first: Callable[[Context], Scene]
 ) -> None:
     def fail(*_: Any, **__: Any) -> None:
         raise ValueError("no knobs")
 
-    monkeypatch.setattr(module, "KnobsPanel", fail)
+    monkeypatch.setattr(scene, "KnobsPanel", fail)
     with pytest.raises(ValueError, match="no knobs") as kept:  # and with it, the scene
         first(context)
     assert not held(context.user_dir)
@@ -134,7 +134,7 @@ def test_one_that_cannot_be_built_lets_go_of_the_place_of_its_runs(
 
 
 @pytest.mark.parametrize("first", SCENES)
-def test_nothing_shows_through_the_title(open_game: Callable[..., Driver], first: type[Scene]) -> None:
+def test_nothing_shows_through_the_title(open_game: Callable[..., Driver], first: Callable[[Context], Scene]) -> None:
     driver = open_game(first)
     driver.frames(2)
     pictures = []

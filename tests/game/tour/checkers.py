@@ -218,6 +218,7 @@ class Recorder:
 TAKEN = {
     "NetworksScene, naming": {Command.CONFIRM, Command.BACK},
     "BindingsScene, binding": {Command.PAUSE},
+    "TasteScene": {Command.BACK},  # by Backspace, which takes an answer back
     "NameDialog": {Command.CONFIRM, Command.BACK},
 }
 
@@ -255,7 +256,7 @@ def _press_all(stop: Stop, driver: Driver, recorder: Recorder) -> None:
         for meaning, place in driver.hints().items():
             driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
             assert recorder.take() == [bound.pop(meaning).key], f"a click on {meaning}"
-        assert not bound or stop.screen in ("DigitsScene", "TrainScene")
+        assert not bound or stop.screen in ("DigitsScene", "TrainScene", "DigitTrainingScene")
 
 
 def the_usual_size_of_text_comes_back(visit: Visit) -> None:

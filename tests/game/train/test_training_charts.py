@@ -14,7 +14,7 @@ from ai.training.loop import PARTS
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts, ticks_of
+from game.scenes.train.charts import DIGIT_CHARTS, LANDER_CHARTS, Beside, TrainingCharts, ticks_of
 from game.training.library import Library
 from game.training.record import EarlierRun, put_beside, take_away
 from game.training.run import TrainingRun
@@ -44,9 +44,10 @@ def long_run(seconds: float, decisions: float) -> History:
     return history
 
 
-def looked(charts: TrainingCharts, history: History, beside: Beside | None = None) -> TrainingCharts:
-    for _ in range(24):
-        charts.look(history, beside or Beside())
+def looked(
+    charts: TrainingCharts, history: History, beside: Beside | None = None, moment: int | None = None
+) -> TrainingCharts:
+    charts.take(history, beside or Beside(), "", moment)
     return charts
 
 
@@ -54,18 +55,18 @@ def test_what_is_expected_is_drawn_and_said_in_points_whatever_networks_count_in
     modern, classic = (run_of(PRESETS[name], -80.0) for name in ("modern", "classic"))
     assert modern["mean_q"][0] != classic["mean_q"][0]
     for history in (modern, classic):
-        chart = looked(TrainingCharts(), history).charts[1]
+        chart = looked(TrainingCharts(LANDER_CHARTS), history).charts[1]
         earned, expected = chart.runs
         np.testing.assert_allclose(expected.y, -80.0, rtol=1e-6)
         np.testing.assert_allclose(earned.y, 1.0)
         assert chart.caption == texts.TRAIN_SCORES.format(1, -80).replace("-", "−")
-    chart = looked(TrainingCharts(), run_of(PRESETS["modern"], -0.2)).charts[1]
+    chart = looked(TrainingCharts(LANDER_CHARTS), run_of(PRESETS["modern"], -0.2)).charts[1]
     assert chart.caption == texts.TRAIN_SCORES.format(1, 0), "no −0"
 
 
 def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
     healthy, other = (run_of(PRESETS["modern"], 80.0) for _ in range(2))
-    charts = TrainingCharts()
+    charts = TrainingCharts(LANDER_CHARTS)
     charts.show(more=True)
     looked(charts, healthy, Beside([EarlierRun("other", other, 1)], "healthy", paid_otherwise=True))
     compared = {chart.label: [run.name for run in chart.runs] for chart in charts.charts}
@@ -123,7 +124,7 @@ def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both() 
 
 
 def test_a_short_run_beside_a_long_one_is_measured_by_the_same_seconds() -> None:
-    charts = TrainingCharts()
+    charts = TrainingCharts(LANDER_CHARTS)
     looked(charts, long_run(12.0, 200_000.0), Beside([EarlierRun("long", long_run(367.0, 4e6), 1)]))
     for chart in charts.charts:
         assert chart.x_range == pytest.approx((0.0, 367.0))
@@ -131,14 +132,13 @@ def test_a_short_run_beside_a_long_one_is_measured_by_the_same_seconds() -> None
 
 
 def test_a_place_on_the_axis_is_a_moment_of_the_run() -> None:
-    charts, run = TrainingCharts(), long_run(100.0, 1e6)
+    charts, run = TrainingCharts(LANDER_CHARTS), long_run(100.0, 1e6)
     looked(charts, run)
     assert charts.decisions_at(50.0) == pytest.approx(500_000)
     assert charts.decisions_at(200.0) == np.inf, "beyond its end is now"
-    charts.go_to(500_000)
-    looked(charts, run)
+    looked(charts, run, moment=500_000)
     assert [chart.marker for chart in charts.charts] == pytest.approx([50.0] * 2)
-    charts.go_to(None)
+    looked(charts, run)
     assert charts.charts[0].marker is None
 
 

@@ -76,7 +76,7 @@ def test_each_of_them_can_be_chosen(open_game: Callable[..., Driver], own: list[
 def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
     driver = reading(open_game, context)
     driver.press_on("Train")
-    assert driver.top_name == "DigitTrainingScene"
+    assert driver.top_name == "TrainScene"
     save(context, "mine")
     driver.key(pygame.K_ESCAPE)
     assert driver.choice("Modern").options[-1] == "mine"

@@ -10,7 +10,7 @@ from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import Config
 from game.scenes.physics.scene import PhysicsScene
-from game.scenes.train.base import INSIDE
+from game.scenes.train.landers import INSIDE
 from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
@@ -110,7 +110,7 @@ def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player.frames(2)
     player.form.focus(player.the(VirtualPointer))
     player.press("confirm")
-    view = player.top.inside.view
+    view = player.top.view.inside.view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
     bring(player, view.centres[1][3])
     assert view.hovered == (1, 3)

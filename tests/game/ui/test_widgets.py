@@ -43,15 +43,15 @@ def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
     return driver, driver.top
 
 
-def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Subtests):
+def test_arrows_follow_a_column_and_go_on_in_the_next(subtests: pytest.Subtests):
     for start, direction, end in [
         (0, DOWN, 1),
-        (2, DOWN, 0),
-        (0, UP, 2),
+        (2, DOWN, 3),
+        (0, UP, 5),
         (1, RIGHT, 4),
         (4, LEFT, 1),
         (4, RIGHT, 4),
-        (5, DOWN, 3),
+        (5, DOWN, 0),
     ]:
         with subtests.test(start=start, direction=direction, end=end):
             assert neighbour(COLUMNS, start, direction) == end
@@ -78,7 +78,7 @@ def test_keyboard_works_every_widget(page: tuple[Driver, Page]):
 def test_pad_works_every_widget(page: tuple[Driver, Page]):
     game, scene = page
     down, right = pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_RIGHT
-    for button in (pygame.CONTROLLER_BUTTON_A, down, right, down, right, down, right):
+    for button in (pygame.CONTROLLER_BUTTON_A, down, right, pygame.CONTROLLER_BUTTON_A, down, right, down, right):
         game.button(button)
     assert scene.log == ["go", True, pytest.approx(0.6), 1]
 

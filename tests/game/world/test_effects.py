@@ -6,18 +6,14 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.flights.recording import AREA
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.push import KEYS
-from ai.lander.rules import AREAS
 from ai.lander.sensing import NEAR, near_edges
 from game.audio.flight_sounds import FlightSound
 from game.drawing.canvas import Canvas
-from game.flight.flight import Recording
-from game.flight.replay import replayed
 from game.scenes.play.words import dangers
 from game.world.camera import View
 from game.world.landscape.ground import draw_edges
@@ -158,7 +154,7 @@ def test_no_effect_ever_changes_a_flight():
 
 def at(*state: float) -> LanderEnv:
     """A lander in the area of people."""
-    return placed(state, limits=LIMITS.in_area(AREA))
+    return placed(state, limits=LIMITS.roomy())
 
 
 @pytest.mark.parametrize(("state", "side"), [((27, 10, 2, 0, 0, 0), "right"), ((-27, 10, -2, 0, 0, 0), "left"),
@@ -185,18 +181,19 @@ def test_far_from_every_edge_nothing_is_announced():
     assert not np.ptp(pygame.surfarray.array3d(canvas.surface), axis=(0, 1)).any()
 
 
-def test_people_have_more_room_and_old_recordings_the_room_they_had():
-    assert all(new > old for new, old in zip(AREAS[AREA], AREAS[0], strict=True))
-    assert LanderEnv(1, 0).limits == LIMITS  # networks are trained in the first area
-    for area, (half_width, ceiling) in enumerate(AREAS):
-        limits = replayed(Recording(3, "random", area=area)).env.limits
-        assert (limits.half_width, limits.ceiling) == (half_width, ceiling)
-    old, new = (begun(3, area=area) for area in range(2))
-    for flight in (old, new):
-        flight.env.place(np.ones(1, bool), np.array([[21.5, 12.0, 3.0, 0, 0, 0]]))
-        for _ in range(30):
-            flight.step()
-    assert (old.outcome, new.outcome) == (Outcome.OUT_OF_BOUNDS, Outcome.FLYING)
+def test_people_have_more_room_than_networks_are_trained_with():
+    env, flight = LanderEnv(1, 0), begun(3)
+    assert env.limits == LIMITS
+    limits = flight.env.limits
+    assert (limits.half_width, limits.ceiling) == (30.0, 29.0)
+    assert (limits.half_width, limits.ceiling) > (LIMITS.half_width, LIMITS.ceiling)
+    env.reset()
+    for each in (env, flight.env):
+        each.place(np.ones(1, bool), np.array([[21.5, 12.0, 3.0, 0, 0, 0]]))
+    for _ in range(30):
+        flight.step()
+        env.fly(np.array([0]))
+    assert (env.outcome[0], flight.outcome) == (Outcome.OUT_OF_BOUNDS, Outcome.FLYING)
 
 
 def test_a_craft_that_is_whole_comes_to_rest_upright_beside_the_pad():

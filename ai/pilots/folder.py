@@ -40,7 +40,7 @@ class Measured:
             return False
 
 
-class Shelf:
+class PilotFolder:
     """The player's pilots. Nothing in them runs before it is asked for by name."""
 
     def __init__(self, user_dir: Path) -> None:

@@ -7,15 +7,15 @@ import pytest
 
 from ai.files import writing
 from ai.pilots.child import ACT, load
+from ai.pilots.folder import TEMPLATE, Measured, PilotFolder
 from ai.pilots.own import MeasuredPilot
-from ai.pilots.shelf import TEMPLATE, Measured, Shelf
 from ai.training.tasks import evaluate
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def test_new_files_lie_beside_each_other_and_are_never_overwritten(tmp_path: Path):
-    files = Shelf(tmp_path)
+    files = PilotFolder(tmp_path)
     assert files.files() == {}
     first = files.new()
     first.write_text("mine")
@@ -31,13 +31,13 @@ def test_a_full_disk_leaves_no_half_of_a_file(tmp_path: Path, monkeypatch: pytes
 
     monkeypatch.setattr(writing, "synchronise", full)
     with pytest.raises(OSError, match="space"):
-        Shelf(tmp_path).new()
-    assert Shelf(tmp_path).files() == {}
+        PilotFolder(tmp_path).new()
+    assert PilotFolder(tmp_path).files() == {}
     assert not list((tmp_path / "pilots").iterdir())
 
 
 def test_measurements_are_kept_in_their_order_and_are_stale_once_the_file_was_saved_again(tmp_path: Path):
-    files = Shelf(tmp_path)
+    files = PilotFolder(tmp_path)
     assert files.measured() == []
     results = [Measured("pilot", 0.25, 7.5, 3.0, 1e9), Measured("pilot", 0.9, 8.0, 2.5, 1e9 + 1)]
     files.keep(results[0])
