@@ -154,18 +154,22 @@ def deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
 
 
 def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) -> Array:
-    """Both ends of the incident edge, (n, 2, 2), cut to the strip between the normals at the reference edge's ends."""
+    """Both ends, (n, 2, 2), of the part of the incident edge that lies beside the reference edge.
+
+    All is measured along the reference edge; ● are the ends of the part:
+
+        incident     first ─────●━━━━━━━━━━●──── last
+        reference               0 ──────── width
+    """
     edge = end - start
     tangent = edge / length(edge)[:, None]
-    # Along the reference edge: where the incident edge's ends lie, and where its own do.
-    first, last = dot(incident_start - start, tangent), dot(incident_end - start, tangent)
-    span = last - first
-    span = np.where(np.abs(span) < 1e-12, 1e-12, span)
-    sides = np.stack([np.zeros_like(first), dot(edge, tangent)], axis=1)
-    low, high = np.minimum(first, last), np.maximum(first, last)
-    bounded = np.minimum(np.maximum(sides, low[:, None]), high[:, None])
-    along = (bounded - first[:, None]) / span[:, None]
-    return incident_start[:, None] + (incident_end - incident_start)[:, None] * along[..., None]
+    first, last, width = dot(incident_start - start, tangent), dot(incident_end - start, tangent), dot(edge, tangent)
+    ends = np.stack([np.zeros_like(width), width], axis=1)
+    ends = np.minimum(np.maximum(ends, np.minimum(first, last)[:, None]), np.maximum(first, last)[:, None])
+    whole = last - first
+    whole = np.where(np.abs(whole) < 1e-12, 1e-12, whole)
+    share = (ends - first[:, None]) / whole[:, None]  # of the incident edge, from its start
+    return incident_start[:, None] + (incident_end - incident_start)[:, None] * share[..., None]
 
 
 def _single(normal: Array, point: Array, depth: Array, margin: float) -> Manifold:

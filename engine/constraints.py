@@ -104,11 +104,13 @@ class Constraints:
         return bool(change.any())
 
     def push(self, lacking: Array, total: Array) -> Array:
-        """Return impulses p (2, m) ≥ 0 in place of `total`, so that each point gains the speed it is `lacking`.
+        """Return the pushes (2, m) that are to take the place of `total`, so that points gain the speed they lack.
 
-        That is p = total + K⁻¹·lacking. Where a point would be pulled by it, that gets nothing, and may gain more than
-        it lacked: the linear complementarity problem p ≥ 0, K·(p - total) ≥ lacking, with equality in one of the two at
-        each point. The other point then does alone, without what the first has pushed at it until now.
+        Of the two points of a contact there are three cases. `together` they gain just what they lack: K·(p - total) =
+        lacking. But pushes are at least 0. Where one point would have to pull, it gets none, and the other is pushed
+        `alone`: it makes up for its own lack, and for what the first has done for it until now. Where both would, each
+        is asked alone, and gets no less than 0. (This is the linear complementarity problem p ≥ 0, K·(p - total) ≥
+        lacking, one of the two an equality at each point.)
         """
         together = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
         if together.min() >= 0:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -53,9 +52,17 @@ class Circle:
 
 
 class Polygon:
-    """A convex polygon in its body's frame, vertices (k, 2) in metres, kept counter-clockwise; immutable.
+    """A convex polygon in its body's frame; immutable.
 
     Raises ValueError for fewer than three vertices, no area, or a corner that points inwards.
+
+    Attributes:
+        vertices: (k, 2) in metres, counter-clockwise.
+        normals: (k, 2) of the edges, outwards, of length 1.
+        area: square metres.
+        centroid: centre of area, (2,).
+        second_moment: polar one about the centroid, m⁴; times density it is the inertia.
+        bounding_radius: distance of the farthest vertex from the centroid, metres.
 
           v3 ---- edge 2 ---- v2
           |                   |         edge i leads from vertex i to vertex i + 1;
@@ -81,56 +88,30 @@ class Polygon:
             raise ValueError(f"a polygon must not cross itself: {vertices!r}")
         self.vertices = corners
         self.normals = right_of(edges) / length(edges)[:, None]
+        self._measure()
+
+    def _measure(self) -> None:
+        """Work out area, centroid and second moment: sums over the edges, from a to b, as seen from the first vertex.
+
+            A = Σ a × b / 2      c = Σ (a + b)·(a × b) / 6A      second moment = Σ (a × b)·(a·a + a·b + b·b) / 12
+
+        That moment is about the first vertex; about the centroid c it is less by A·c·c (parallel axis theorem).
+        """
+        a = self.vertices - self.vertices[0]
+        b = _following(a)
+        twice = cross(a, b)
+        self.area = float(twice.sum() / 2)
+        own: Array = ((a + b) * twice[:, None]).sum(axis=0) / (6 * self.area)
+        self.centroid: Array = self.vertices[0] + own
+        about_first = (twice * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
+        self.second_moment = float(about_first - self.area * dot(own, own))
+        self.bounding_radius = float(length(self.vertices - self.centroid).max())
 
     @classmethod
     def box(cls, width: float, height: float, centre: Point = (0.0, 0.0), angle: float = 0.0) -> Polygon:
         """A rectangle `width` by `height` around `centre`, turned by `angle`."""
         corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * (width / 2, height / 2)
         return cls(rotate(corners, np.cos(angle), np.sin(angle)) + np.asarray(centre))
-
-    @cached_property
-    def _own(self) -> Array:
-        """Vertices as seen from the first one: far from the origin, products of large numbers would cancel."""
-        own: Array = self.vertices - self.vertices[0]
-        return own
-
-    @cached_property
-    def _fans(self) -> Array:
-        """Twice the area of the triangle between the first vertex and each edge, (k,)."""
-        return cross(self._own, _following(self._own))
-
-    @cached_property
-    def area(self) -> float:
-        """Square metres."""
-        return float(self._fans.sum() / 2)
-
-    @cached_property
-    def centroid(self) -> Array:
-        """Centre of area, (2,): v₀ + Σ (vᵢ + vᵢ₊₁)·(vᵢ × vᵢ₊₁) / 6A over the vertices v as seen from v₀, A the area."""
-        centre: Array = self.vertices[0] + self._own_centroid
-        return centre
-
-    @cached_property
-    def _own_centroid(self) -> Array:
-        sums = self._own + _following(self._own)
-        centre: Array = (sums * self._fans[:, None]).sum(axis=0) / (6 * self.area)
-        return centre
-
-    @cached_property
-    def second_moment(self) -> float:
-        """Polar second moment of area about the centroid c, m⁴; times density it is the inertia.
-
-        About the first vertex it is Σ (a × b)·(a·a + a·b + b·b) / 12 over the edges from a to b, as seen from there;
-        about c it is less by A·c·c (parallel axis theorem).
-        """
-        a, b = self._own, _following(self._own)
-        about_first = (self._fans * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
-        return float(about_first - self.area * dot(self._own_centroid, self._own_centroid))
-
-    @cached_property
-    def bounding_radius(self) -> float:
-        """Distance of the farthest vertex from the centroid, metres."""
-        return float(length(self.vertices - self.centroid).max())
 
     def moved(self, offset: Array) -> Polygon:
         """Return the same polygon shifted by `offset` (2,)."""

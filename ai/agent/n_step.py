@@ -42,12 +42,14 @@ class NStep:
         """
         if self._states.shape[1:] != state.shape:
             self._start(len(state), state.shape[1], reward.shape[1:])
+        # Each row moves up by one, to make room for this decision in the last.
         for rows, newest in ((self._states, state), (self._actions, action), (self._returns, 0.0), (self._open, True)):
             rows[:-1], rows[-1] = rows[1:], newest
-        age = np.arange(self.n - 1, -1, -1)[:, None]  # decisions ago
-        worth = np.float32(self.discount) ** age.astype(np.float32) * self._open
+        powers = np.float32(self.discount) ** np.arange(self.n - 1, -1, -1, dtype=np.float32)  # γⁿ⁻¹ … γ, 1
+        worth = powers[:, None] * self._open  # of this decision's reward, to each row
         self._returns += worth.reshape(worth.shape + (1,) * (reward.ndim - 1)) * reward
-        complete = self._open & ((age == self.n - 1) | ended)
+        complete = self._open & ended
+        complete[0] = self._open[0]  # n rewards long
         self._open &= ~complete
         row, slot = complete.nonzero()  # oldest first: a pruned buffer loses the oldest
         transitions = Transition(

@@ -72,8 +72,8 @@ class Normalizer:
 
     def to_json(self) -> dict[str, Any]:
         """Return the values as JSON can hold them."""
-        kept = {"origin": self.origin, "mean": self.mean, "squares": self.squares}
-        return {"count": self.count} | {name: numbers.tolist() for name, numbers in kept.items()}
+        parts = {"origin": self.origin, "mean": self.mean, "squares": self.squares}
+        return {"count": self.count} | {name: numbers.tolist() for name, numbers in parts.items()}
 
     def load(self, values: dict[str, Any]) -> None:
         """Take over what `to_json` gave; raises KeyError, TypeError or ValueError for anything else."""

@@ -102,14 +102,14 @@ class ReplayBuffer:
     def load_state(self, state: Mapping[str, NDArray[Any]], num_actions: int) -> None:
         """Fill an empty buffer with what `state` returned.
 
-        Raises KeyError, TypeError or ValueError for what no buffer of an agent with so many actions can have held.
+        Raises KeyError, TypeError or ValueError for what no buffer of an agent with so many actions can have had.
         """
-        count, held = len(state["action"]), {}
+        count, given = len(state["action"]), {}
         for name, part in self.transitions._asdict().items():
-            held[name] = array_like(np.empty((count, *part.shape[1:]), part.dtype), state[name], name)
-        if count > self.capacity or ((held["action"] < 0) | (held["action"] >= num_actions)).any():
+            given[name] = array_like(np.empty((count, *part.shape[1:]), part.dtype), state[name], name)
+        if count > self.capacity or ((given["action"] < 0) | (given["action"] >= num_actions)).any():
             raise ValueError("the memory is of another agent")
-        self.add(Transition(**held))
+        self.add(Transition(**given))
 
     def clear(self) -> None:
         """Forget all transitions."""

@@ -239,7 +239,7 @@ class DropoutLayer(Layer):
         self.rate = rate
 
     def forward_propagate(self, input_data: Array) -> Array:
-        """Return what is kept, enlarged, and 0 elsewhere."""
+        """Return what is not dropped, enlarged, and 0 elsewhere."""
         self.rng = self.rng or np.random.default_rng(0)
         # Drawn in the order that images have in memory; for small arrays the order does not matter.
         drawn = self.rng.random(input_data.shape[::-1], np.float32).T
@@ -254,7 +254,7 @@ class DropoutLayer(Layer):
         return input_data
 
     def input_error(self, output_error: Array) -> Array:
-        """Return the error of what was kept, enlarged alike, and 0 elsewhere."""
+        """Return the error of what was not dropped, enlarged alike, and 0 elsewhere."""
         self.error = fitting(self.error, self.factors.shape, self.factors.dtype)
         np.multiply(output_error, self.factors, out=self.error)
         return self.error

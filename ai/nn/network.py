@@ -145,7 +145,7 @@ class NeuralNetwork:
     def forward_propagate(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch, and let every layer keep what the way back needs.
 
-        The array is kept for reuse: the next call overwrites it.
+        The next call overwrites the array.
         """
         data = self._input(input_data)
         for layer in self.layers:

@@ -36,7 +36,7 @@ class Optimizer(ABC):
     its direction kept (Pascanu et al. 2013); with None it never is.
     """
 
-    remembers: tuple[str, ...] = ()  # names of what is kept of each parameter from step to step
+    remembers: tuple[str, ...] = ()  # names of what it remembers of each parameter from step to step
     never_negative: tuple[str, ...] = ()  # which of these no step can bring below 0
 
     def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
@@ -88,7 +88,7 @@ class Optimizer(ABC):
 
     def state(self) -> dict[str, npt.NDArray[Any]]:
         """Return copies of all that the next step depends on, besides the settings."""
-        return {"steps": np.array(self.steps)} | {name: kept.copy() for name, kept in self.memory.items()}
+        return {"steps": np.array(self.steps)} | {name: memory.copy() for name, memory in self.memory.items()}
 
     def load_state(self, state: Mapping[str, npt.NDArray[Any]], values: Array) -> None:
         """Go on from what `state` returned, with the parameters `values` (parameters,).
@@ -115,9 +115,9 @@ class Optimizer(ABC):
     def _prepare(self, values: Array) -> None:
         if not self.memory:
             self.memory = {name: np.zeros_like(values) for name in self.remembers}
-        for name, kept in self.memory.items():
-            if kept.shape != values.shape:
-                raise ValueError(f"{name} is kept of {kept.size} parameters, and here are {values.size}")
+        for name, memory in self.memory.items():
+            if memory.shape != values.shape:
+                raise ValueError(f"{name} is kept of {memory.size} parameters, and here are {values.size}")
         self.scratch = np.empty_like(values)
 
 

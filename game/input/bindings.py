@@ -100,7 +100,7 @@ _SPARE_KEYS: Final[Mapping[int, Command]] = {
 # Keys that screens, lists and text lines use themselves, and modifier keys.
 _TAKEN_KEYS: Final = frozenset({
     pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F1, pygame.K_F2,
-    pygame.K_e, pygame.K_k, pygame.K_m, pygame.K_o, pygame.K_q, pygame.K_t, pygame.K_z,
+    pygame.K_k, pygame.K_t, pygame.K_z,
     *range(pygame.K_0, pygame.K_9 + 1), *range(pygame.K_KP1, pygame.K_KP0 + 1),
     pygame.K_LALT, pygame.K_RALT, pygame.K_LGUI, pygame.K_RGUI, pygame.K_CAPSLOCK, pygame.K_NUMLOCK
 })  # fmt: skip

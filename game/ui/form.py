@@ -37,16 +37,12 @@ class HintButton(Widget):
     def place(self, hint: Hint, box: pygame.FRect) -> None:
         """Stand for this hint, in a box in points."""
         self.hint, self.label, self.rect = hint, hint.meaning, pygame.Rect(box)
-        self.relative_rect = self.rect
 
     def press(self) -> Transition | None:
         return self.hint.run() if self.hint.run else None
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.hover_point(*event.pos)
-        if pressed:
-            self.outcome = self.press()
-        return bool(pressed)
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        return bool(self.rect.collidepoint(hover_x, hover_y))
 
 
 class Form:
@@ -59,11 +55,8 @@ class Form:
     Attributes:
         keys: the hints that can be pressed.
         used: whether a widget used the last event, or it moved the focus.
-        in_order: whether the end of a column leads on to the next one, and not back to its beginning.
 
     """
-
-    in_order = False
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
@@ -139,12 +132,9 @@ class Form:
         """Have the hints of these rows pressed where they stand; those of a card come before the flight's behind it."""
         found = [pair for row in reversed(rows) for pair in zip(row.hints, row.boxes(canvas), strict=True)]
         found = [(hint, box) for hint, box in found if hint.run]
-        for key in self.keys[len(found) :]:
-            key.kill()  # type: ignore[no-untyped-call]
         self.keys = self.keys[: len(found)] + [HintButton(hint) for hint, _ in found[len(self.keys) :]]
         for key, (hint, box) in zip(self.keys, found, strict=True):
             key.place(hint, box)
-            key.join(self.manager)
 
     def find(self, key: str) -> Widget | None:
         """Return the widget of a key, if there is one."""
@@ -232,6 +222,11 @@ class Form:
             widget.paint(canvas)
 
     def _handle_mouse(self, event: pygame.event.Event) -> Transition | None:
+        under = (key for key in self.keys if key.hover_point(*event.pos))
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and (key := next(under, None)):
+            outcome = key.press()
+            self._acted = True  # and has made its own sounds
+            return outcome
         moves = event.type == pygame.MOUSEMOTION and self.typing  # a nudge of the mouse must not end typing
         for index, widget in enumerate(self.widgets):
             if (
@@ -246,15 +241,14 @@ class Form:
             widget.held and widget.hover_point(*event.pos) for widget in self.widgets
         )
         self.used = self.manager.process_events(event)
-        pressed = (*self.keys, *self.widgets)
-        return next((outcome for widget in pressed if (outcome := _outcome(widget)) is not None), None)
+        return next((outcome for widget in self.widgets if (outcome := _outcome(widget)) is not None), None)
 
     def _move(self, command: Command) -> None:
         if not self.widgets:
             return
         direction = _ARROWS[command]
         if not (direction[0] and self.widgets[self._index].shift(direction[0])):
-            self._index = neighbour([w.box for w in self.widgets], self._index, direction, in_order=self.in_order)
+            self._index = neighbour([w.box for w in self.widgets], self._index, direction)
 
     def _repeat(self) -> None:
         """Go on moving while a direction is held: sideways the value, up and down the focus."""
@@ -354,11 +348,11 @@ def tab(event: pygame.event.Event) -> int:
     return -1 if getattr(event, "mod", 0) & pygame.KMOD_SHIFT else 1
 
 
-def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, *, in_order: bool = False) -> int:
+def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
     """Return the index of the nearest box in a direction; up and down wrap around.
 
-    With `in_order`, distances up and down are between edges, so that of two columns side by side the first one comes
-    first, and the lower end of a column leads to the next box in order, which is the first one of the next column.
+    Distances up and down are between edges, so that of two columns side by side the first one comes first. The lower
+    end of a column leads to the next box in order, which is the first one of the next column.
 
     A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
     leave a row only at its end.
@@ -366,9 +360,9 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
     here = boxes[current]
 
     def ahead(box: pygame.Rect) -> float:
-        if direction[1] and in_order:
+        if direction[1]:
             return box.top - here.bottom + 1 if direction[1] > 0 else here.top - box.bottom + 1
-        return direction[0] * (box.centerx - here.centerx) + direction[1] * (box.centery - here.centery)
+        return direction[0] * (box.centerx - here.centerx)
 
     def aside(box: pygame.Rect) -> float:
         if direction[0]:
@@ -389,8 +383,4 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
         forward = [index for index in row if index in apart] or row or apart
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
-    if direction[1] and in_order:
-        return (current + direction[1]) % len(boxes)
-    if direction[1] and others:
-        return min([current, *others], key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
-    return current
+    return (current + direction[1]) % len(boxes) if direction[1] else current

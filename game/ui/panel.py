@@ -198,7 +198,6 @@ class Panel(Column):
 
     def __init__(self, form: Form) -> None:
         super().__init__(form)
-        form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)
         self.height = self.scrolled = 0.0
         self._shown: Widget | None = None  # the widget that was in focus when it was last laid out

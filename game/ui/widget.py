@@ -73,7 +73,6 @@ class Widget(UIElement):
         spells: whether text is typed into it.
         follows_mouse: whether the focus comes to it with the mouse; not to a picture that only keys need the focus for.
         warmth: 0 to 1, follows `focused` smoothly.
-        help: a sentence about it, for screens that explain the focused widget.
         ringed: whether the focus ring is drawn; not while a mouse is in use.
 
     """
@@ -84,7 +83,7 @@ class Widget(UIElement):
     def __init__(self, box: pygame.typing.RectLike, label: str) -> None:
         GUISprite.__init__(self)  # which has a place already before it joins a form
         self.rect = self.relative_rect = pygame.Rect(box)
-        self.label, self.help, self._key = label, "", ""
+        self.label, self._key = label, ""
         self.focused = self.typing = self.ringed = self.held = False
         self.warmth = 0.0
         self.outcome: Transition | None = None

@@ -153,8 +153,8 @@ class Watched:
 
     @property
     def can_untouch(self) -> bool:
-        """Whether there is a touch to undo."""
-        return self._before is not None
+        """Whether there is a touch to undo, in this flight."""
+        return self._before is not None and self.touched
 
     @property
     def state(self) -> Doubles:

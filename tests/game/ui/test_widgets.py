@@ -43,15 +43,15 @@ def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
     return driver, driver.top
 
 
-def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Subtests):
+def test_arrows_follow_a_column_and_go_on_in_the_next(subtests: pytest.Subtests):
     for start, direction, end in [
         (0, DOWN, 1),
-        (2, DOWN, 0),
-        (0, UP, 2),
+        (2, DOWN, 3),
+        (0, UP, 5),
         (1, RIGHT, 4),
         (4, LEFT, 1),
         (4, RIGHT, 4),
-        (5, DOWN, 3),
+        (5, DOWN, 0),
     ]:
         with subtests.test(start=start, direction=direction, end=end):
             assert neighbour(COLUMNS, start, direction) == end
