@@ -11,6 +11,7 @@ from game.drawing.tokens import INK, VIEW_SIZE
 from game.input import signs
 from game.input.bindings import KEYBOARD, Bindings, Command
 from game.ui.context import Context
+from game.ui.form import Form
 from game.ui.hints import Hint, HintRow
 from tests.support.screens import SCREENS
 
@@ -49,7 +50,7 @@ def test_a_press_and_a_click_on_its_hint_sound_the_same_and_once(open_game, cont
     assert played == by_key
 
 
-def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
+def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn(context: Context):
     canvas, done = Canvas(pygame.Surface(VIEW_SIZE)), []
     hints = [
         Hint("R", "again", lambda: done.append("again")),
@@ -59,10 +60,11 @@ def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
     row = HintRow(hints, (100, 100))
     again, stop, turn = row.boxes(canvas)
     assert again.right <= stop.left + 12
-    assert row.at(canvas, again.center) is hints[0]
-    assert row.at(canvas, stop.center) is hints[1]
-    assert row.at(canvas, turn.center) is None  # no press does that
-    assert row.at(canvas, (100, 300)) is None
+    form = Form(context)
+    form.lay_keys([row], canvas)
+    for place in (again.center, stop.center, turn.center, (100, 300)):  # no press does the third
+        form.handle_event(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=place, button=1))
+    assert done == ["again", "stop"]
     before = pygame.surfarray.array3d(canvas.surface)
     row.draw(canvas)
     written = (pygame.surfarray.array3d(canvas.surface) != before).any(axis=(1, 2)).nonzero()[0]
