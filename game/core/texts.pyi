@@ -10,6 +10,7 @@ def said(sentence: str, /) -> str: ...
 def choose(language: str = "") -> bool: ...
 
 ADVICE: Final[dict[str, str]]
+ADVICE_FINE: Final[str]
 ADVICE_MOVING: Final[str]
 ADVICE_OUTAGE: Final[str]
 ADVICE_TANK: Final[str]
@@ -823,6 +824,7 @@ STEP_PLACE: Final[str]
 STEP_SCALE: Final[dict[str, str]]
 STEP_TERMS: Final[dict[str, tuple[str, str]]]
 STEP_TITLE: Final[str]
+STRUCK_ABOVE: Final[str]
 SUMS_TITLE: Final[str]
 SWARM_BEST: Final[str]
 SWARM_LUCKIEST: Final[str]
