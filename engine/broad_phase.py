@@ -23,6 +23,7 @@ class BroadPhase:
     def __init__(self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float) -> None:
         self._shapes = shapes
         self._moving, self._fixed = span(params.dynamic), ~params.dynamic
+        self._movers = np.flatnonzero(params.dynamic)
         self._may_meet = _may_meet(params)
         self._shape_reach = shapes.reach + margin
         self._reach = np.zeros(len(params.group))  # of bodies, from the centre of mass
@@ -36,10 +37,10 @@ class BroadPhase:
     def all_pairs(self) -> Ints:
         """Return all pairs of shapes that may ever meet, (pairs, 2); of a polygon and a circle, it first."""
         mover, other = self._may_meet.nonzero()
-        return self._shapes.pairs_of(np.arange(len(self._fixed))[self._moving][mover], other)[0]
+        return self._shapes.pairs_of(self._movers[mover], other)[0]
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
-        """Discard the kept boxes of fixed bodies, which were put elsewhere."""
+        """Discard the boxes of fixed bodies, which were put elsewhere."""
         self._stale[bodies] = self._fixed[bodies]
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
@@ -62,7 +63,7 @@ class BroadPhase:
     def _shapes_of(self, overlap: Bools) -> tuple[Ints, Ints]:
         """Return the worlds (n,) and pairs of shapes (n, 2) of bodies that overlap, (movers, bodies, batch)."""
         world, mover, other = overlap.transpose(2, 0, 1).nonzero()
-        pair, row = self._shapes.pairs_of(np.arange(len(self._fixed))[self._moving][mover], other)
+        pair, row = self._shapes.pairs_of(self._movers[mover], other)
         return world[row], pair
 
     def _body_boxes(self, state: BodyState) -> Array:
@@ -98,10 +99,10 @@ class BroadPhase:
 
 
 def _overlap(a: Array, b: Array, among: Bools | np.bool_ = np.True_) -> Bools:
-    """Whether the boxes `a` (4, ...) overlap the boxes `b`, `among` those that may; it is done where none is left."""
+    """Whether the boxes `a` (4, ...) overlap the boxes `b`, `among` those that may."""
     overlap: Bools = (a[1] <= b[3]) & among
     for low, high in ((b[1], a[3]), (a[0], b[2]), (b[0], a[2])):
-        if overlap.any():
+        if overlap.any():  # most often none is left after a comparison or two
             overlap &= low <= high
     return overlap
 

@@ -185,9 +185,11 @@ class World:
 
     def _find_contacts(self) -> Contacts | None:
         """Return what touches, with the impulses that it begins with; None if nothing does."""
-        contacts = self._narrow_phase.touching(self.state, *self._broad_phase.near(self.state, self._rest.awake))
-        while self._rest.wake_touched(contacts, self.contacts):  # what has woken may touch others that were left out
-            contacts = self._narrow_phase.touching(self.state, *self._broad_phase.near(self.state, self._rest.awake))
+        woken = True
+        while woken:  # what has woken may touch others, which were left out as asleep
+            world, pair = self._broad_phase.near(self.state, self._rest.awake)
+            contacts = self._narrow_phase.touching(self.state, world, pair)
+            woken = self._rest.wake_touched(contacts, self.contacts)
         if contacts:
             self._narrow_phase.warm_start(contacts, self._remembered, pass_on=self.sleeping)
         return contacts

@@ -35,7 +35,7 @@ OPENED = {
 }
 STARTED = {
     "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
-    "game.scenes.watch.pilots": ({"subprocess.Popen"}, "the system's editor"),
+    "game.scenes.networks.files": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),
     "game.core.worker_process": ({"pickle.loads"}, "the pipe from its own window"),

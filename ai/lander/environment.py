@@ -45,6 +45,7 @@ __all__ = [
 ]  # fmt: skip
 
 # What begins at zero with each flight.
+_DOWN: Final = 1.0  # metres between feet and ground from which on a craft is not down, however it stands
 _BEGUN: Final = (
     "actions", "shares", "outcome", "cause", "contacts", "touched", "impact", "steps", "main_steps", "side_steps",
     "still_steps", "feet_steps", "tilted_steps",
@@ -239,6 +240,8 @@ class LanderEnv:
         most = (limits.touch_speed, limits.slide_speed, limits.touch_tilt)
         kept = [felt <= allowed for felt, allowed in zip(self.impact.T, most, strict=True)]
         whole: Bools = np.all(kept, axis=0) & (self.outcome == Outcome.CRASHED)
+        if self.ground.roofs:  # one that touched rock overhead is not down
+            whole &= self.position[:, 1] - self.ground.height(self.position[:, 0]) < self.params.stand + _DOWN
         return whole
 
     def _top(self, pad: Any, above: float = 0.0) -> Doubles:

@@ -60,6 +60,10 @@ class _Learner(DeepQAgent):
         self.flown()
         return actions, result
 
+    def learn(self) -> float | None:
+        """Take gradient steps, once there is any pay to learn from."""
+        return super().learn() if self.paying.points.any() else None
+
     def store(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
         super().store(observation, actions, replace(result, reward=self.paying.latest), success)
 

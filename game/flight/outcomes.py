@@ -132,7 +132,7 @@ def cause_of(env: LanderEnv) -> Cause:
         return Cause.TILTED
     if cause is not Cause.TERRAIN or env.intact[0]:
         return cause
-    return next(cause for cause, (value, limit) in _exceeded(env).items() if value > limit)
+    return next((cause for cause, (value, limit) in _exceeded(env).items() if value > limit), cause)
 
 
 def _tipped(env: LanderEnv) -> bool:
@@ -171,6 +171,8 @@ def crash_reason(env: LanderEnv) -> str:
     """Return which limit the lander exceeded, and by how much."""
     cause, limits = cause_of(env), _exceeded(env)
     value, limit = limits.get(cause, (0.0, 0.0))
+    if cause is Cause.TERRAIN and not env.intact[0]:
+        return texts.STRUCK_ABOVE
     steep = struck_side(env)
     value = touch_speed(env) if steep else value
     if cause is Cause.TILTED and _tipped(env):

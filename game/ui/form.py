@@ -37,16 +37,12 @@ class HintButton(Widget):
     def place(self, hint: Hint, box: pygame.FRect) -> None:
         """Stand for this hint, in a box in points."""
         self.hint, self.label, self.rect = hint, hint.meaning, pygame.Rect(box)
-        self.relative_rect = self.rect
 
     def press(self) -> Transition | None:
         return self.hint.run() if self.hint.run else None
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.hover_point(*event.pos)
-        if pressed:
-            self.outcome = self.press()
-        return bool(pressed)
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        return bool(self.rect.collidepoint(hover_x, hover_y))
 
 
 class Form:
@@ -136,12 +132,9 @@ class Form:
         """Have the hints of these rows pressed where they stand; those of a card come before the flight's behind it."""
         found = [pair for row in reversed(rows) for pair in zip(row.hints, row.boxes(canvas), strict=True)]
         found = [(hint, box) for hint, box in found if hint.run]
-        for key in self.keys[len(found) :]:
-            key.kill()  # type: ignore[no-untyped-call]
         self.keys = self.keys[: len(found)] + [HintButton(hint) for hint, _ in found[len(self.keys) :]]
         for key, (hint, box) in zip(self.keys, found, strict=True):
             key.place(hint, box)
-            key.join(self.manager)
 
     def find(self, key: str) -> Widget | None:
         """Return the widget of a key, if there is one."""
@@ -229,6 +222,11 @@ class Form:
             widget.paint(canvas)
 
     def _handle_mouse(self, event: pygame.event.Event) -> Transition | None:
+        under = (key for key in self.keys if key.hover_point(*event.pos))
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and (key := next(under, None)):
+            outcome = key.press()
+            self._acted = True  # and has made its own sounds
+            return outcome
         moves = event.type == pygame.MOUSEMOTION and self.typing  # a nudge of the mouse must not end typing
         for index, widget in enumerate(self.widgets):
             if (
@@ -243,8 +241,7 @@ class Form:
             widget.held and widget.hover_point(*event.pos) for widget in self.widgets
         )
         self.used = self.manager.process_events(event)
-        pressed = (*self.keys, *self.widgets)
-        return next((outcome for widget in pressed if (outcome := _outcome(widget)) is not None), None)
+        return next((outcome for widget in self.widgets if (outcome := _outcome(widget)) is not None), None)
 
     def _move(self, command: Command) -> None:
         if not self.widgets:

@@ -29,6 +29,7 @@ from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import FlightsScene, MenuScene
 from game.scenes.menus.settings import SettingsScene
+from game.scenes.networks.scene import NetworksScene
 from game.scenes.physics.exhibit import Exhibit
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
@@ -41,9 +42,7 @@ from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
 from game.scenes.train.digits import digit_training
-from game.scenes.train.networks import NetworksScene
 from game.scenes.train.scene import TrainScene
-from game.scenes.watch.pilots import PilotsScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -81,7 +80,6 @@ SCREENS: dict[str, Make] = {
     "BindingsScene": BindingsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
-    "PilotsScene": lambda context: PilotsScene(context, lambda file: None),
 }
 
 

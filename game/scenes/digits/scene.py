@@ -128,7 +128,7 @@ class DigitsScene(PanelScene):
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
             (texts.MORE[self._more], self._open_more),
         ])  # fmt: skip
-        answer, why = right.beside((22, 33), least=_ANSWER)
+        answer, why = right.beside((22, 33), least=_ANSWER, apart=24.0)
         answer.add(self._write_answer)
         shown = self._bars.shown
         self._bars = answer.widget(DigitBars(self._correct))

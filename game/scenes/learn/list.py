@@ -87,7 +87,7 @@ class LearnScene(PanelScene):
         self.own = done_with_own(self.context)
         doors: dict[str, OnPress] = {
             "train": partial(push, "train"), "land": partial(push, "runs"), "hand": partial(push, "play"),
-            "file": lambda: push("pilots", partial(own_pilots.take, self.context)),
+            "file": partial(push, "runs"),
         }  # fmt: skip
         column.caption(texts.LEARN_OWN_TITLE)
         for name, press in doors.items():

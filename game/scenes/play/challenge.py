@@ -295,6 +295,8 @@ class FlownMission(Challenge):
         earned = texts.MISSION_TOGETHER if credit.together else texts.MEDALS[credit.medal]
         card.score = texts.DIAL_JOIN.join(filter(None, (card.score, earned)))
         card.ring, card.medal = credit.together, credit.medal
+        if card.title == texts.PERFECT and credit.medal < 3:  # a medal asks for more than a good touch
+            card.title = texts.OUTCOMES[Outcome.LANDED.name][0]
         if credit.counts:
             card.reason = self._missing(flight.env, credit.medal)
 

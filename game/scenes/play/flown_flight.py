@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pygame
 
 from ai.environment import Doubles
-from ai.flights.recording import AS_IT_IS
+from ai.flights.recording import AS_IT_IS, UNHURRIED
 from ai.flights.verification import landing_score
+from ai.lander.environment import Cause
 from ai.lander.push import KEYS, Push
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
@@ -27,7 +28,8 @@ from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
 from game.flight.logbook import Records
 from game.flight.networks import Network
-from game.flight.outcomes import OutcomeCard, outcome_card
+from game.flight.outcomes import OutcomeCard, cause_of, outcome_card
+from game.input.bindings import Held
 from game.scenes.play.challenge import Challenge, Wanted
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.ending import FlightEnding, FlownPath
@@ -280,6 +282,8 @@ class FlownFlight:
         card = outcome_card(flight.env, flight.share)
         card.who, card.place = credit.who, self.path.clear_place(whole.view(1.0)) if whole else 0.5
         credit.add_to(card)
+        if card.advice and cause_of(flight.env) is Cause.TILTED:
+            card.advice = f"{card.advice} {texts.ADVICE_FINE.format(key=self.context.controls.word(Held.FINE))}"
         if credit.helped:
             card.stepped_in, card.watched = len(self.interventions.moments), self.interventions.watched(flight)
         if add := self.challenge.words(self).card:
@@ -403,10 +407,12 @@ class FlownFlight:
         return values.coasting if shown and isinstance(values, Landings) else None
 
     def _shown(self, *, whole: bool) -> list[str]:
-        """Name the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
+        """Name the read-outs: the four that a pilot needs, and what is left of time and of a small tank; or all."""
         if whole:
             return [name for name in GAUGES if name != "thrust" or not set(self.flight.recording.pushes).issubset(KEYS)]
-        return [*PILOT, *(["fuel"] if self.flight.env.conditions.tank < math.inf else [])]
+        env = self.flight.env
+        limits = {"fuel": env.conditions.tank < math.inf, "time": env.limits.time < UNHURRIED / 2}
+        return [*PILOT, *(name for name, limited in limits.items() if limited)]
 
     def _behind_panel(self, canvas: Canvas, view: View, pose: Doubles) -> bool:
         """Whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

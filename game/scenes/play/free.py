@@ -15,6 +15,7 @@ from ai.lander.spawns import LADDER, RUNGS
 from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
 from game.flight.flight import Flight
+from game.flight.networks import sentence
 from game.flight.outcomes import OutcomeCard
 from game.scenes.play.challenge import Challenge, Start, Wanted, Words
 
@@ -71,7 +72,9 @@ class FreeFlight(Challenge):
         if rung is None:
             return
         card.rung = self._now
-        card.climb = _words(rung, self._now) if flown.credit.own or not card.good else texts.LADDER_NOT_FLOWN
+        card.climb = _words(rung, self._now)
+        if card.good and not flown.credit.own:
+            card.climb = sentence(texts.LADDER_NOT_FLOWN, flown.credit.who)
         if card.good:  # what a landing counts for, helped or not, is said once, by the line of the ladder
             card.reason = texts.OUTCOMES[Outcome.LANDED.name][1]
 

@@ -20,6 +20,7 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEX
 from game.explain.readouts import Lamp
 from game.flight.credit import ASSISTS
 from game.flight.networks import titled
+from game.input.bindings import Command
 from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
 from game.ui.hints import Hint, HintRow, flight_hints, split
@@ -215,8 +216,9 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
         sentence_now, warns = (said, False) if said else usual
         shown = helps if flown.help_words.shown else None
         panel = flown.copilot_panel.box(flown.context.reading()) if flown.thinks else None
-        return Head(sentence_now, warns, lamp, hints=hints, help=shown, means=means, panel=panel)
-    if flown.ending.shown:
+        caption = words.line if flown.challenge.rules.skip else ""  # how far the tutorial is
+        return Head(sentence_now, warns, lamp, caption, hints=hints, help=shown, means=means, panel=panel)
+    if flown.ending.shown and not whole:
         return Head(hints=hints)
     caption, name = words.title, words.line
     network = texts.WITH_NETWORK.format(network=titled(flown.network.name)) if whole and flight.chooser.network else ""
@@ -241,10 +243,11 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
 def _asides(flown: FlownFlight, words: Words) -> list[str]:
     flight, credit = flown.flight, flown.credit
     off = flown.helps and flown.helped.help == "off" != flown.context.settings.help
-    before = not (flown.begun or flight.over)
+    before, controls = not (flown.begun or flight.over), flown.context.controls
+    more = texts.TUTORIAL_WHEEL if controls.mouse_in_use else controls.word(Command.FASTER)
     beside = flown.ghost and words.goal and not flight.over
     lines = [
-        texts.HELP_NOT_HERE if off and flown.challenge.rules.kept and before else "",
+        texts.HELP_NOT_HERE.format(more=more) if off and flown.challenge.rules.kept and before else "",
         credit.header if credit.alone and not flight.over else "",
         credit.notice or words.goal,
         words.eased if credit.bar == "assists" and before else "",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _LASTS: Final = 75  # steps that a message stays after the last override: long enough to be read
 _FADES: Final = 14  # steps that the lamp shows it
 _CALM: Final = 60  # steps without a change after which another one counts anew
+_TOO_LATE: Final = 20  # decisions in a row from which on there is no more to be said of that
 _LATE: Final = 3  # decisions in a row that come too late, from which on that is said
 
 
@@ -57,8 +58,8 @@ class Interventions:
             self._decision = flight.choice.together
             self._said = changed_by(guarded) if guarded else ""
             self._late = self._late + 1 if guarded and is_late(guarded) else 0
-        if flight.choice.overridden and 0 < self._late < _LATE:
-            self._word = seen
+        if flight.choice.overridden and (0 < self._late < _LATE or self._late > _TOO_LATE):
+            self._word = seen if self._late < _LATE else ""
         elif flight.choice.overridden:
             self._word = self._said or difference(flight.choice.asked.action, flight.choice.push.action)
         elif self._said:

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 _WORD: Final = 20.0
 _COVER: Final = 0.94  # opacity: the Earth does not shine through the words
-_PILOTS: Final = "pilots"  # in the player's folder
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
 
@@ -117,8 +116,6 @@ class FlightPauseScene(PauseScene):
             panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
         elif not flown.credit.alone:
             panel.button(networks.pause_label(self._flight.network.name), self._open_networks)
-            if (self.context.user_dir / _PILOTS).is_dir():
-                panel.button(texts.PILOTS_OPEN, lambda: push("pilots", self._flight.choose_own))
 
     def describe_below(self, panel: Panel) -> None:
         """Add which flight it is, and what is to be known of it."""

@@ -262,15 +262,15 @@ class PlayScene(Scene):
         self._away = 0
         return push("flight_pause", self)
 
-    def choose_network(self, name: str) -> None:
-        self._settings.model = name
-        if self.context.pilot:
-            self.context.pilot.chosen = False
-        self.context.apply_settings()
-        self._change_network()
-
-    def choose_own(self, path: Path | None) -> None:
-        own.take(self.context, path)
+    def choose_network(self, name: str, path: Path | None = None) -> None:
+        """Let another network fly, or with a `path` a file of the player's own."""
+        if path:
+            own.take(self.context, path)
+        else:
+            self._settings.model = name
+            if self.context.pilot:
+                self.context.pilot.chosen = False
+            self.context.apply_settings()
         self._change_network()
 
     def _change_network(self) -> None:

@@ -181,9 +181,11 @@ class Tutorial(Challenge):
         if self.rules.through:
             return ""
         self._leave_out(flight.chooser.network)
-        if flight.over and not self._over:
-            self._why = self._reason(flight)
+        hand, ends = flight.chooser.hand, flight.over and not self._over
+        landed = ends and flight.outcome is Outcome.LANDED and hand is StickHolder.HUMAN and not self.lesson.needs
         self._over = flight.over
+        if ends and not landed:
+            self._why = self._reason(flight)
         self._flown_for += 1
         self._saved |= flight.choice.overridden and (flight.chooser.guard is None or flight.chooser.guard.saves)
         if self.praise:
@@ -195,9 +197,10 @@ class Tutorial(Challenge):
             return ""
         if self.lesson.guarded and self._flown_for == _LONG and flight.chooser.hand is StickHolder.HUMAN:
             flight.chooser.hand_over()  # kept from crashing by a co-pilot, one may hover without end
-        hand = flight.chooser.hand
         done = (hand is (self.lesson.by or hand) and self.lesson.done(flight)) or self._watched(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
+        if landed:  # whoever lands need not be taught to brake any more
+            self._done_for = self.lesson.steps
         if self._done_for < self.lesson.steps:
             return ""
         self.praise, self._why = _PRAISE, ""

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from game.flight.foresight import LastChance
 
 Why = tuple[str, str, str]  # a title, and two lines
+_FLOWN_BY, _WARNED, _CHANGED, _AT_ONCE = range(4)  # how urgent sentences are
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
 _AHEAD: Final = 0.9  # seconds of look-ahead for stopping a turn
@@ -39,20 +40,20 @@ _LEAST_LOSS: Final = 0.05  # points below the best that are called so
 
 
 def sentence(flight: Flight[Crew], credit: Credit, changed: str, controls: Controls) -> tuple[str, bool]:
-    """Return the one sentence of a flight, and whether it is a warning; `changed` is what help has just changed."""
+    """Return the most urgent sentence of a flight, and whether it is a warning; `changed` is what help has changed."""
     if flight.over:
         return "", False
     by_hand = flight.chooser.hand is StickHolder.HUMAN
+    said = [(_WARNED, words) for words in dangers(flight.env)][:1]
     if by_hand and not flight.chooser.safe and (words := urgent(flight.env)):
         other = Held.RIGHT if turned(flight.env) > 0 else Held.LEFT
-        return words.format(main=controls.word(Held.MAIN), other=controls.word(other)), True
+        said.append((_AT_ONCE, words.format(main=controls.word(Held.MAIN), other=controls.word(other))))
     if changed:
-        return changed, False
-    if words := next(dangers(flight.env), ""):
-        return words, True
-    if not by_hand:
-        return networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER)), False
-    return credit.header, False
+        said.append((_CHANGED, changed))
+    back = networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER))
+    said.append((_FLOWN_BY, credit.header if by_hand else back))
+    urgency, words = max(said)
+    return words, urgency in (_AT_ONCE, _WARNED)
 
 
 def turned(env: LanderEnv) -> float:

@@ -37,11 +37,11 @@ class Small:
             self._picture = None
         self.box = box.copy()
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
+    def draw(self, canvas: Canvas) -> None:
         """Draw it where it is."""
         if self._picture is None or self._picture.scale != canvas.scale:
             self._picture = canvas.picture(*self.box.size)
-        self.swarm.draw(self._picture, alpha)
+        self.swarm.draw(self._picture, 1.0)
         canvas.surface.blit(self._picture.surface, canvas.rect(*self.box))
 
 
@@ -96,7 +96,7 @@ class Pair:
         for number, half in enumerate(self.halves):
             half.place(pygame.FRect(box.left + number * (wide + _GAP), box.top, wide, box.height))
 
-    def draw(self, canvas: Canvas, alpha: float, waits: str) -> None:
+    def draw(self, canvas: Canvas, waits: str) -> None:
         """Draw both, or say what is waited for."""
         pointer = canvas.pointer
         for side, half in enumerate(self.halves):
@@ -104,7 +104,7 @@ class Pair:
                 canvas.fill(canvas.rect(*half.box), NIGHT0)
                 canvas.text(waits, half.box.center, size=SMALL, colour=MUTE, align="centre")
                 continue
-            half.draw(canvas, alpha)
+            half.draw(canvas)
             if self.over(side):
                 word = texts.OUTCOMES[Outcome(self.question[side].outcome).name][0]
                 canvas.text(word, (half.box.left + 12, half.box.top + 24), size=SMALL, colour=INK)
@@ -137,7 +137,7 @@ class PairRow(RowWidget):
         if cursor.canvas is None:
             self._pair.place(box)
         else:
-            self._pair.draw(cursor.canvas, 1.0, self._waits())
+            self._pair.draw(cursor.canvas, self._waits())
 
 
 def _seen(flight: Flight, at: int) -> SwarmState:

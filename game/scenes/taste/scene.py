@@ -23,11 +23,11 @@ from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
-    from game.drawing.canvas import Align, Canvas
+    from game.drawing.canvas import Align
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
 
-_MORE: Final = "more"
+_MORE: Final = "taste"  # what a player can open
 _CHAPTER: Final = "pay"  # says more of what a network is paid for
 _LEAST: Final = 300.0  # points of a column
 _HIGH, _PAIR, _NOW = 0.5, 0.38, 0.26  # height of a picture, of its width; of the pair and the landers, of the view
@@ -49,7 +49,6 @@ class TasteScene(PanelScene):
         super().__init__(context)
         self.run = TasteRun(Nursery(context.user_dir))
         self.pair, self.now = Pair(), Small()
-        self._alpha = 1.0
         try:
             self.run.keeps = self.run.collection.hold()
             left = self.run.unfinished
@@ -71,8 +70,9 @@ class TasteScene(PanelScene):
     def describe(self, panel: Panel) -> None:
         panel.text(lambda: self._sentence, size=TITLE)
         panel.gap(6)
-        panel.widget(PairRow(self.pair, self.answer, self._height, lambda: self._waits))
-        panel.words([(texts.TASTE_AGAIN, self.pair.again), (texts.MORE[self._opened], self._open)])
+        self._row = panel.widget(PairRow(self.pair, self.answer, self._height, lambda: self._waits))
+        again, back = (texts.TASTE_AGAIN, self.pair.again), (texts.TASTE_BACK, self._take_back)
+        panel.words([again, back, (texts.MORE[self._opened], self._open)])
         panel.gap(6)
         if self._opened:
             self._describe_more(panel)
@@ -126,7 +126,7 @@ class TasteScene(PanelScene):
         if cursor.canvas is None:
             self.now.place(box)
         else:
-            self.now.draw(cursor.canvas, self._alpha)
+            self.now.draw(cursor.canvas)
 
     def _write_sides(self, cursor: Cursor) -> None:
         """Write which side of the bars means what."""
@@ -140,11 +140,12 @@ class TasteScene(PanelScene):
     def _write_liking(self, number: int, word: str, cursor: Cursor) -> None:
         """Draw how much of a sum is liked, to the right, or disliked, to the left, and how sure that is."""
         cursor.gap(2)
+        label = cursor.column(cursor.left, (_MIDDLE - _BAR) * cursor.width - 8)
+        label.styled(word, SMALL, INK)
         if (canvas := cursor.canvas) is not None:
             asked = self.run.asked
             middle, half = cursor.left + _MIDDLE * cursor.width, _BAR * cursor.width
-            y, room = cursor.y + 0.62 * SMALL * 1.4, (_MIDDLE - _BAR) * cursor.width - 8
-            canvas.text(word, (cursor.left, cursor.y + SMALL), size=SMALL, colour=INK, room=room)
+            y = cursor.y + 0.62 * SMALL * 1.4
             canvas.line((middle, y - 7), (middle, y + 7), FAINT)
             if asked is not None and asked.answers:
                 most = max(float(np.abs(asked.liking).max()), 2.0)
@@ -153,20 +154,24 @@ class TasteScene(PanelScene):
                 canvas.line((ends[0], y), (ends[1], y), MUTE)
                 left, right = sorted((middle, middle + half * float(liking)))
                 canvas.fill(canvas.rect(left, y - 3, max(right - left, 1), 6), NET)
-        cursor.gap(1.4 * SMALL)
+        cursor.y = label.y
 
     # Keys
 
     def actions(self) -> Table:
-        """One of two, neither, or the last one again."""
+        """Answer by the arrows, unless they move from word to word."""
+        answers = [
+            Action(pygame.K_LEFT, partial(self.answer, FIRST), texts.TASTE_THIS, Command.LEFT),
+            Action(pygame.K_DOWN, partial(self.answer, NEITHER), texts.TASTE_NEITHER, Command.DOWN),
+            Action(pygame.K_RIGHT, partial(self.answer, SECOND), texts.TASTE_THAT, Command.RIGHT),
+        ]
+        focused, controls = self.form.focused, self.context.controls
+        words = focused is not None and focused is not self._row and focused.ringed
         return [
-            Action(Command.LEFT, partial(self.answer, FIRST), texts.TASTE_THIS),
-            Action(Command.DOWN, partial(self.answer, NEITHER), texts.TASTE_NEITHER),
-            Action(Command.RIGHT, partial(self.answer, SECOND), texts.TASTE_THAT),
-            Action(pygame.K_BACKSPACE, self._take_back, texts.TASTE_BACK, gamepad=Command.HANDOVER),
+            *((each.hint_for(controls) for each in answers) if words else answers),
+            Action(pygame.K_BACKSPACE, self._take_back, gamepad=Command.HANDOVER),
             Action(Command.RETRY, self.pair.again),
-            self.form.confirms(""),
-            self.form.goes_back(""),
+            self.form.goes_back(texts.HINT_BACK),
         ]
 
     def answer(self, answer: int) -> None:
@@ -176,6 +181,7 @@ class TasteScene(PanelScene):
             self.run.ask("choose", asked.answers, answer)
             self.context.sound.play("choose")
             self.pair.ask(None)
+            self.form.focus(self._row)
 
     def _take_back(self) -> None:
         self.run.ask("take_back")
@@ -232,7 +238,3 @@ class TasteScene(PanelScene):
 
     def _networks(self) -> Transition:
         return push("runs")
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        self._alpha = alpha
-        super().draw(canvas, alpha)

@@ -1,1 +1,1 @@
-"""Train: a run of landers or of digits, its knobs, charts, experiments and network; saved networks, and studies."""
+"""Train: a run of landers or of digits, its knobs, charts, experiments and network."""

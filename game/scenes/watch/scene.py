@@ -150,7 +150,6 @@ class WatchScene(WorldScene):
             widgets += [
                 ChoiceRow(texts.WATCH_MAP, texts.KNOB_SWITCH, on, self._choose_map, SMALL),
                 ButtonRow(texts.PAUSE_NEW_STARTS, self._begin_anew, size=SMALL),
-                ButtonRow(texts.PILOTS_OPEN, self._open_pilots, size=SMALL),
             ]
         widgets.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
         widgets[-1].key = "more"
@@ -243,14 +242,10 @@ class WatchScene(WorldScene):
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = brief(networks.word(self.flyer.chosen.name), LONGEST_NAME)
-        return [(texts.WATCH_PAUSE.format(name=name), self._open_networks), (texts.PILOTS_OPEN, self._open_pilots)]
+        return [(texts.WATCH_PAUSE.format(name=name), self._open_networks)]
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self._take)
-
-    def _open_pilots(self) -> Transition:
-        now = self.context.pilot.path if self.context.pilot else None
-        return push("pilots", lambda path: self._take(path.name, path), now=now)
 
     def _take(self, name: str, path: Path | None = None) -> None:
         """Let a pilot fly that was chosen in a list."""

@@ -296,8 +296,8 @@ def test_a_text_is_found_by_name_key_and_place():
     assert texts.OUTCOMES["CRASHED"] == ("Crashed", "")  # as long as the others of its group
     assert texts.CHOICES_PADS_WORDS[1].startswith("three")
     assert [texts.RUN_SETTINGS.format(preset="Modern", count=count) for count in (1, 2)] == [
-        "Modern, 1 setting changed",
-        "Modern, 2 settings changed",
+        "Trained by settings of its own: 1 is not as in Modern",
+        "Trained by settings of its own: 2 are not as in Modern",
     ]
 
 

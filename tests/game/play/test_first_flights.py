@@ -19,6 +19,7 @@ from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import ladder_rung
+from game.flight.networks import sentence
 from game.flight.outcomes import outcome_card
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.free import FreeFlight
@@ -128,7 +129,7 @@ def test_only_crashes_of_ones_own_lead_down_and_only_landings_of_ones_own_up():
     settings = Settings(rung=0)
     card = concluded(FreeFlight(settings), flight)
     assert flight.outcome is Outcome.LANDED
-    assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
+    assert (settings.rung, card.climb) == (0, sentence(texts.LADDER_NOT_FLOWN, texts.THE_NETWORK))
 
 
 def test_who_has_landed_often_before_begins_high_up_and_the_page_of_play_says_where(context: Context):

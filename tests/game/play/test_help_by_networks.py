@@ -21,6 +21,7 @@ from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import HELD, LastChance, SixFutures
 from game.flight.outcomes import outcome_card, qualities
+from game.input.bindings import Command
 from game.scenes.play import interventions
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.interventions import Interventions
@@ -119,7 +120,8 @@ def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_c
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
     driver.frames(2)
     assert not play(driver).flight.chooser.shared
-    assert texts.HELP_NOT_HERE in written
+    more = driver.app.context.controls.word(Command.FASTER)
+    assert texts.HELP_NOT_HERE.format(more=more) in written
     driver.key(pygame.K_PLUS)
     driver.frames(2)
     assert play(driver).flight.chooser.shared

@@ -1,7 +1,6 @@
 """Hints and actions: what they name, do and sound like; `tests/game/tour` asks each whether all ways run the same."""
 
 import pygame
-import pytest
 
 from ai.lander.missions import FIRST, MISSIONS
 from game.core import texts
@@ -11,6 +10,7 @@ from game.drawing.tokens import INK, VIEW_SIZE
 from game.input import signs
 from game.input.bindings import KEYBOARD, Bindings, Command
 from game.ui.context import Context
+from game.ui.form import Form
 from game.ui.hints import Hint, HintRow
 from tests.support.screens import SCREENS
 
@@ -49,7 +49,7 @@ def test_a_press_and_a_click_on_its_hint_sound_the_same_and_once(open_game, cont
     assert played == by_key
 
 
-def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
+def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn(context: Context):
     canvas, done = Canvas(pygame.Surface(VIEW_SIZE)), []
     hints = [
         Hint("R", "again", lambda: done.append("again")),
@@ -59,26 +59,16 @@ def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
     row = HintRow(hints, (100, 100))
     again, stop, turn = row.boxes(canvas)
     assert again.right <= stop.left + 12
-    assert row.at(canvas, again.center) is hints[0]
-    assert row.at(canvas, stop.center) is hints[1]
-    assert row.at(canvas, turn.center) is None  # no press does that
-    assert row.at(canvas, (100, 300)) is None
+    form = Form(context)
+    form.lay_keys([row], canvas)
+    for place in (again.center, stop.center, turn.center, (100, 300)):  # no press does the third
+        form.handle_event(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=place, button=1))
+    assert done == ["again", "stop"]
     before = pygame.surfarray.array3d(canvas.surface)
     row.draw(canvas)
     written = (pygame.surfarray.array3d(canvas.surface) != before).any(axis=(1, 2)).nonzero()[0]
     assert again.left <= written.min()
     assert written.max() <= turn.right
-
-
-@pytest.mark.parametrize("from_right", [False, True])
-def test_a_row_without_room_is_written_smaller(from_right: bool):
-    canvas = Canvas(pygame.Surface(VIEW_SIZE))
-    hints = [Hint("Space", "stop the time"), Hint("Period", "the next decision")]
-    wide, narrow = (HintRow(hints, (600, 100), from_right, room=room) for room in (1000, 160))
-    assert wide.width(canvas) > narrow.width(canvas)
-    assert narrow.width(canvas) == pytest.approx(160, abs=3)
-    ends = {row.boxes(canvas)[-1].right - 6 if from_right else row.boxes(canvas)[0].left + 6 for row in (wide, narrow)}
-    assert ends == {600}
 
 
 def test_every_sign_is_drawn_and_looks_like_no_other():

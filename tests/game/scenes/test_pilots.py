@@ -13,12 +13,13 @@ import pytest
 from ai.pilots import folder as pilot_folder
 from ai.pilots.own import OwnPilot
 from game.core import texts
-from game.flight import own
+from game.flight import networks, own
+from game.scenes.networks import files
+from game.scenes.networks.scene import NetworksScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.watch import pilots
-from game.scenes.watch.pilots import PilotsScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
+from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.inline_worker import InlineWorker
 from tests.support.reading import Reading
@@ -31,7 +32,7 @@ GOOD = "def act(o):\n    return 4"
 def edited(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """The files that the editor was opened on."""
     opened: list[Path] = []
-    monkeypatch.setattr(pilots, "edit", opened.append)
+    monkeypatch.setattr(files, "edit", opened.append)
     return opened
 
 
@@ -47,13 +48,13 @@ def test_an_editor_is_opened_on_the_file_and_none_is_reported(tmp_path: Path, mo
 
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setattr(subprocess, "Popen", Opened)
-    pilots.edit(tmp_path / "pilot.py")
+    files.edit(tmp_path / "pilot.py")
     assert called == [["xdg-open", str(tmp_path / "pilot.py")]]
     monkeypatch.undo()
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(OSError, match="xdg-open"):
-        pilots.edit(tmp_path / "pilot.py")
+        files.edit(tmp_path / "pilot.py")
 
 
 def scene(driver: Driver) -> WatchScene:
@@ -61,21 +62,29 @@ def scene(driver: Driver) -> WatchScene:
     return driver.top
 
 
-def open_pilots(driver: Driver) -> None:
-    driver.press_on(texts.MORE[0])
+def open_pilots(driver: Driver, name: str = "") -> None:
+    """Open the list of networks over Watch, with a file chosen."""
+    driver.app.scenes.apply(scene(driver)._open_networks())
     driver.frames(1)
-    driver.press_on(texts.PILOTS_OPEN)
+    if name:
+        choose(driver, name)
+
+
+def choose(driver: Driver, name: str) -> None:
+    listed = driver.top
+    listed._choose_row(next(n for n, each in enumerate(listed.items) if each.name == name))
+    driver.frames(1)
 
 
 def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, context: Context, edited: list[Path]):
     watching.key(pygame.K_SPACE)
     open_pilots(watching)
-    assert isinstance(watching.top, PilotsScene)
+    assert isinstance(watching.top, NetworksScene)
     watching.press_on(texts.PILOTS_NEW)
     [path] = edited
     assert path == context.user_dir / "pilots" / "pilot.py"
     path.write_text(GOOD)
-    watching.press_on(texts.PILOTS_FLY)
+    watching.press_on(texts.RUN_CHOOSE)
     watch = scene(watching)
     assert not watch.playback.stopped, "what was stopped goes on"
     watching.wait(lambda: watch.flyer.network.name == "pilot.py")
@@ -101,7 +110,7 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
 def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Driver, context: Context):
     pilot_folder.PilotFolder(context.user_dir).new().write_text("def act(:")
     open_pilots(watching)
-    watching.press_on(texts.PILOTS_FLY)
+    watching.press_on(texts.RUN_CHOOSE)
     watch = scene(watching)
     watching.wait(lambda: "SyntaxError" in watch.flyer.problem)
     assert watch.flyer.network.name == "scripted"
@@ -123,28 +132,28 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
     def refuse(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left")
 
-    monkeypatch.setattr(*((pilots, "edit") if fails == "editor" else (pilot_folder, "write_text")), refuse)
+    monkeypatch.setattr(*((files, "edit") if fails == "editor" else (pilot_folder, "write_text")), refuse)
     open_pilots(watching)
     watching.press_on(texts.PILOTS_NEW)
     folder = context.user_dir / "pilots"
-    message = watching.top._said
+    message = watching.top.files.said
     if fails == "editor":
         assert message == texts.PILOTS_NO_EDITOR.format(path=folder / "pilot.py")
     else:
         assert message == texts.PILOTS_NOT_WRITTEN.format(path=folder, reason="No space left")
-        assert not watching.top._files
+        assert not watching.top.files.read()
 
 
 def test_it_is_measured_and_that_is_said_in_one_line_until_the_file_is_saved_again(
     watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str]
 ):
     monkeypatch.setattr(own, "STARTS", 10)
-    monkeypatch.setattr(pilots, "Worker", InlineWorker)
+    monkeypatch.setattr(files, "Worker", InlineWorker)
     path = pilot_folder.PilotFolder(context.user_dir).new()
     open_pilots(watching)
     written.clear()
     watching.press_on(texts.PILOTS_MEASURE)
-    watching.wait(lambda: watching.top._worker is None)
+    watching.wait(lambda: watching.top.files._worker is None)
     assert texts.PILOTS_MEASURING[1].format(count=10) in written
     (measured,) = pilot_folder.PilotFolder(context.user_dir).measured()
     assert (measured.name, measured.landed <= 0.8) == ("pilot", True)
@@ -160,9 +169,9 @@ def test_it_is_measured_and_that_is_said_in_one_line_until_the_file_is_saved_aga
     written.clear()
     watching.frames(1)
     assert texts.PILOTS_STALE in " ".join(written)
-    watching.press_on("pilot")
+    watching.form.focus(watching.the(ListRow))
     watching.key(pygame.K_RETURN)
-    assert watching.top_name == "WatchScene", "a press on its name leads to what can be done with it"
+    assert watching.top_name == "WatchScene", "a press on its name takes it"
 
 
 def test_a_measurement_says_how_far_it_is_and_keeps_what_came(context: Context, monkeypatch: pytest.MonkeyPatch):
@@ -185,17 +194,17 @@ def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, c
     watching.frames(1)
     assert watching.widget(texts.PILOTS_CANCEL).box.topleft == place
     watching.press_on(texts.PILOTS_CANCEL)
-    assert watching.top._worker is None
+    assert watching.top.files._worker is None
     assert watching.widget(texts.PILOTS_MEASURE).box.topleft == place
 
 
 def test_what_is_wrong_with_a_measured_file_is_reported(watching: Driver, context: Context, monkeypatch):
-    monkeypatch.setattr(pilots, "Worker", InlineWorker)
+    monkeypatch.setattr(files, "Worker", InlineWorker)
     pilot_folder.PilotFolder(context.user_dir).new().write_text("def act(o): return 9")
     open_pilots(watching)
     watching.press_on(texts.PILOTS_MEASURE)
-    watching.wait(lambda: watching.top._worker is None)
-    assert "whole number from 0 to 5" in watching.top._said
+    watching.wait(lambda: watching.top.files._worker is None)
+    assert "whole number from 0 to 5" in watching.top.files.said
     assert pilot_folder.PilotFolder(context.user_dir).measured() == []
 
 
@@ -205,11 +214,13 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     path = pilot_folder.PilotFolder(context.user_dir).new()
     driver = open_game(PlayScene, 3)
     driver.keys(pygame.K_ESCAPE)
-    driver.press_on(texts.PILOTS_OPEN)
-    driver.press_on(texts.PILOTS_FLY)
-    driver.keys(pygame.K_ESCAPE)
-    play = driver.top
+    play = driver.app.scenes.stack[0]
     assert isinstance(play, PlayScene)
+    driver.press_on(networks.pause_label(play.network.name))
+    choose(driver, "pilot.py")
+    driver.press_on(texts.RUN_CHOOSE)
+    driver.keys(pygame.K_ESCAPE)
+    assert driver.top is play
     assert play.network.name == "pilot.py"
     assert play.flight.chooser.copilot is None  # it has no values to share the stick by
     context.settings.help = "guard"
@@ -234,7 +245,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
 def test_it_is_raced_as_a_ghost(open_game: Open, context: Context):
     pilot_folder.PilotFolder(context.user_dir).new()
     driver = open_game(WatchScene, seed=2)
-    open_pilots(driver)
+    open_pilots(driver, "pilot.py")
     driver.press_on(texts.PILOTS_RACE)
     play = driver.top
     assert isinstance(play, PlayScene)

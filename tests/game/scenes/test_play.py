@@ -210,7 +210,8 @@ def test_the_pause_changes_the_network_in_mid_flight_and_one_that_breaks_gives_t
     driver.keys(*[pygame.K_TAB] * (1 + (hand is StickHolder.HUMAN)))
     driver.frames(20)
     flight, before = play(driver).flight, play(driver).flight.chooser.network
-    driver.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    driver.keys(pygame.K_ESCAPE)
+    driver.press_on(texts.PAUSE_NETWORK.format(name="modern"))
     assert driver.top_name == "NetworksScene"
     driver.keys(pygame.K_END, pygame.K_RETURN)  # the one that was saved first
     assert "PauseScene" in driver.top_name

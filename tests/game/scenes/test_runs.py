@@ -14,7 +14,7 @@ from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Pop, Push
 from game.scenes.menus.menu import MenuScene
-from game.scenes.train.networks import NetworksScene
+from game.scenes.networks.scene import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context
 from game.ui.entry import EntryRow
@@ -120,7 +120,7 @@ def test_without_any_network_the_screen_still_stands(open_runs, context: Context
     driver = open_runs()
     driver.keys(ENTER, pygame.K_DELETE, pygame.K_F2, RIGHT)
     assert driver.top_name == "NetworksScene"
-    driver.keys(DOWN, ENTER)  # Back
+    driver.keys(DOWN, RIGHT, ENTER)  # Back
     assert driver.top_name == "MenuScene"
 
 
@@ -233,8 +233,7 @@ def test_watch_and_fly_with_the_chosen_one_and_come_back_to_it(open_runs, three:
         click_row(driver, 1)
         click(driver, verb)
         assert driver.top_name == name
-        flyer = driver.top.flyer if name == "WatchScene" else driver.top
-        assert flyer.network.name == "b"
+        assert getattr(driver.top, "flyer", driver.top).network.name == "b"
         assert context.settings.model == "b"
         driver.keys(ESCAPE, UP, ENTER)  # pause, leave
         assert shown(driver) == "b"

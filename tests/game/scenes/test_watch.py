@@ -11,7 +11,7 @@ from ai.training.config import Config
 from game.core import texts
 from game.core.settings import SettingsFile
 from game.flight.networks import DECISION_STEPS
-from game.scenes.train.networks import NetworksScene
+from game.scenes.networks.scene import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context

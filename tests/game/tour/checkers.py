@@ -218,6 +218,7 @@ class Recorder:
 TAKEN = {
     "NetworksScene, naming": {Command.CONFIRM, Command.BACK},
     "BindingsScene, binding": {Command.PAUSE},
+    "TasteScene": {Command.BACK},  # by Backspace, which takes an answer back
     "NameDialog": {Command.CONFIRM, Command.BACK},
 }
 

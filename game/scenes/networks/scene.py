@@ -1,4 +1,4 @@
-"""Networks scene: saved runs and shipped networks in a list; beside it the chosen one, and what can be done with it."""
+"""Networks scene: the player's networks, the game's and the player's own files in one list, and what can be done."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from game.core.scene import Pop, Push, Transition, push
 from game.core.shelf import LibraryError
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
-from game.flight import networks
+from game.explain.figures import percent
+from game.flight import networks, own
 from game.scenes.menus.dialogs import NameDialog, QuestionDialog
+from game.scenes.networks.files import OwnFile, OwnFiles
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -35,13 +37,14 @@ class NetworksScene(PanelScene):
     """A list; beside it, or below, the chosen run, its figures and what can be done with it.
 
     Args:
-        choose: called with the name of the chosen network; the scene then closes. Without it, a run can be
-            watched, flown with and trained further from here.
+        choose: called with the name of what is chosen, and with its path if it is a file of the player's own; the
+            scene then closes. Without it, a network can be watched, flown with and trained further from here.
         train: function that resumes training from a run's folder; by default, a Train scene of its own.
 
     Attributes:
         items: what is listed.
-        chosen: the chosen run; None if there is none.
+        chosen: what is chosen; None if there is nothing.
+        files: the player's own files.
 
     """
 
@@ -50,24 +53,36 @@ class NetworksScene(PanelScene):
     def __init__(
         self,
         context: Context,
-        choose: Callable[[str], None] | None = None,
+        choose: Callable[..., None] | None = None,
         train: Callable[[Path], Transition] | None = None,
     ) -> None:
         super().__init__(context)
         self._choose, self._train = choose, train or (lambda folder: push("train", resume=folder))
         self._library = Library(context.user_dir)
-        self.chosen: SavedRun | None = None
+        self.files = OwnFiles(context)
+        self.chosen: SavedRun | OwnFile | None = None
         self._names: dict[Path, str] = {}
         self._read()
         if choose:
             known = networks.folders(context.models_dir, context.user_dir)
-            self._reload(known.get(context.settings.model, known.get(networks.DEFAULT)))
+            own_file = context.pilot.path if context.pilot and context.pilot.chosen else None
+            self._reload(own_file or known.get(context.settings.model, known.get(networks.DEFAULT)))
         else:
             self._reload()
 
     def enter(self) -> None:
         """Read again what there is, which the scene above may have changed."""
         self._reload()
+
+    def close(self) -> None:
+        """End a measurement."""
+        self.files.cancel()
+
+    def update(self) -> Transition | None:
+        """Follow a measurement."""
+        if self.files.update():
+            self._reload()
+        return super().update()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Leave it to the actions and the widgets; a folder can be dropped here."""
@@ -77,28 +92,28 @@ class NetworksScene(PanelScene):
 
     def actions(self) -> Table:
         """Move, choose, go back; Delete and F2 do what they do elsewhere."""
-        own = [Action(pygame.K_DELETE, self._delete), Action(pygame.K_F2, self._rename)] if self._is_own else []
-        return [self.form.moves, *super().actions(), *own]
+        verbs = [Action(pygame.K_DELETE, self._delete), Action(pygame.K_F2, self._rename)] if self._is_own else []
+        return [self.form.moves, *super().actions(), *verbs]
 
     # What there is
 
     @property
     def _is_own(self) -> bool:
-        """Whether the chosen run is the player's, and not the game's."""
-        return self.chosen is not None and self.chosen.folder.parent == self._library.folder
+        """Whether a run of the player's is chosen."""
+        return isinstance(self.chosen, SavedRun) and self.chosen.folder.parent == self._library.folder
 
-    def _is_shipped(self, run: SavedRun) -> bool:
+    def _is_shipped(self, run: SavedRun | OwnFile) -> bool:
         return run.folder.is_relative_to(self.context.models_dir)
 
     def _read(self) -> None:
         """Read from disk what there is."""
         context = self.context
-        own = self._library.runs()
+        runs = self._library.runs()
         known = networks.folders(context.models_dir, context.user_dir)
         shipped = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
         self._names = {folder: name for name, folder in known.items()}
-        self.items = [*own, *shipped]
-        kept = texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
+        self.items: list[SavedRun | OwnFile] = [*runs, *self.files.read(), *shipped]
+        kept = texts.RUNS_PLACE.format(folder=self._library.folder) if runs else texts.RUNS_NONE
         self.line = self._library.problem or kept
 
     def _reload(self, wanted: Path | None = None) -> None:
@@ -120,13 +135,15 @@ class NetworksScene(PanelScene):
         panel.gap(4)
         left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
         left.add(partial(_write_headings, texts.RUNS_COLUMNS, _CELLS))
-        rows = [row(run, own=not self._is_shipped(run)) for run in self.items]
+        rows = [row(run, self._is_shipped(run)) for run in self.items]
         index = self.items.index(self.chosen) if self.chosen else 0
         self._list = left.listing(
             rows, lambda _: self._press_row(), texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH,
             on_choose=self._choose_row, index=index,
         )  # fmt: skip
-        left.button(texts.BACK, Pop)
+        left.words([(texts.PILOTS_NEW, self._new), (texts.BACK, Pop)])
+        if self.files.said and not isinstance(self.chosen, OwnFile):
+            left.text(self.files.said, size=SMALL, colour=HUMAN)
         self._describe_chosen(self._beside)
 
     def _describe_chosen(self, column: Column) -> None:
@@ -135,6 +152,10 @@ class NetworksScene(PanelScene):
         if run is None:
             return
         column.text(run.name, size=TITLE)
+        if isinstance(run, OwnFile):
+            self._describe_verbs(column)
+            self.files.describe(column, run)
+            return
         if run.problem:
             column.text(run.problem, size=SMALL, colour=HUMAN)
         else:
@@ -147,6 +168,9 @@ class NetworksScene(PanelScene):
         column.aside(texts.RUN_SHIPPED if self._is_shipped(run) else texts.RUN_SAVED.format(when=saved))
         if self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT):
             column.text(texts.RUN_FLIES, size=SMALL, colour=NET)
+        self._describe_verbs(column)
+
+    def _describe_verbs(self, column: Column) -> None:
         column.gap(8)
         for word, press in self.verbs:
             column.button(word, press).pad = 4.0
@@ -157,6 +181,16 @@ class NetworksScene(PanelScene):
         run, verbs = self.chosen, list[tuple[str, OnPress]]()
         if run is None:
             return verbs
+        if isinstance(run, OwnFile):
+            path = run.folder
+            fly: list[tuple[str, OnPress]] = (
+                [(texts.RUN_CHOOSE, self._take)] if self._choose
+                else [(texts.RUN_WATCH, lambda: self._fly("watch")), (texts.RUN_FLY, lambda: self._fly("play"))]
+            )  # fmt: skip
+            measure = (texts.PILOTS_CANCEL, self.files.cancel) if self.files.measuring else (
+                texts.PILOTS_MEASURE, lambda: self._do(self.files.measure, path))  # fmt: skip
+            edit: tuple[str, OnPress] = (texts.PILOTS_EDIT, lambda: self._do(self.files.edit, path))
+            return [*fly, edit, measure, (texts.PILOTS_RACE, partial(self._race, path))]
         if run.flyable and self._choose:
             verbs.append((texts.RUN_CHOOSE, self._take))
         elif run.flyable:
@@ -183,10 +217,28 @@ class NetworksScene(PanelScene):
     # What can be done
 
     def _take(self) -> Transition | None:
-        if not self.chosen or not self.chosen.flyable or self._choose is None:
+        chosen, choose = self.chosen, self._choose
+        if choose is None or chosen is None:
             return None
-        self._choose(self._names[self.chosen.folder])
+        if isinstance(chosen, OwnFile):
+            choose(chosen.name, chosen.folder)
+        elif chosen.flyable:
+            choose(self._names[chosen.folder])
+        else:
+            return None
         return Pop()
+
+    def _new(self) -> None:
+        """Make a file of the player's own, and choose it."""
+        self._reload(self.files.new())
+
+    def _do(self, act: Callable[[Path], None], path: Path) -> None:
+        act(path)
+        self.build()
+
+    def _race(self, path: Path) -> Transition:
+        own.take(self.context, path)
+        return push("play", rival=self.context.pilot, rival_name=path.name)
 
     def _fly(self, route: str) -> Transition:
         self._make_pilot()
@@ -194,13 +246,18 @@ class NetworksScene(PanelScene):
 
     def _make_pilot(self) -> None:
         assert self.chosen is not None
+        if isinstance(self.chosen, OwnFile):
+            own.take(self.context, self.chosen.folder)
+            return
+        if self.context.pilot:
+            self.context.pilot.chosen = False
         self.context.settings.model = self._names[self.chosen.folder]
         self.context.apply_settings()
 
     def _rename(self) -> Transition:
         """Ask for another name; a player without a keyboard is offered one made of the figures."""
         run = self.chosen
-        assert run is not None
+        assert isinstance(run, SavedRun)
         name = suggestion(self._library, run) if self.context.controls.gamepad_in_use else run.name
         return Push(NameDialog(self, texts.NAMING, name, partial(self._rename_to, run)))
 
@@ -219,7 +276,7 @@ class NetworksScene(PanelScene):
     def _delete(self) -> Transition:
         """Ask whether the chosen run is to go for good."""
         run = self.chosen
-        assert run is not None
+        assert isinstance(run, SavedRun)
         answers: list[tuple[str, Callable[[], None]]] = [
             (texts.RUN_KEEP, lambda: None),
             (texts.RUN_DELETE, partial(self._delete_now, run)),
@@ -254,9 +311,13 @@ def _write_headings(words: Sequence[str], columns: Sequence[float], cursor: Curs
     cursor.gap(LEADING * LABEL)
 
 
-def row(run: SavedRun, own: bool) -> Row:
-    """Return the row of a run: name, landing rate, decisions learnt from, and date saved."""
-    saved = time.strftime("%Y-%m-%d", time.localtime(run.saved)) if own else texts.RUNS_SHIPPED
+def row(run: SavedRun | OwnFile, shipped: bool) -> Row:
+    """Return the row of a network: name, landing rate, decisions learnt from, and date saved."""
+    if isinstance(run, OwnFile):
+        measured = run.measured
+        landed = percent(measured.landed, 1) if measured and not measured.stale(run.folder) else "–"
+        return run.name, landed, "–", texts.RUNS_FILE
+    saved = texts.RUNS_SHIPPED if shipped else time.strftime("%Y-%m-%d", time.localtime(run.saved))
     landed, decisions, _ = ("–", "–", "") if run.problem else _figures(run)
     return run.name, landed, decisions, saved
 
