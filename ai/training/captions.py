@@ -62,6 +62,12 @@ def _rises(run: RecentCurves) -> bool:
     return min(_gains(run)) > _CHANGE and run.highest("success_rate") - run.now("success_rate") <= _CHANGE
 
 
+def _steady(run: RecentCurves) -> bool:
+    """Whether the curve is where it was, and its latest number not far below its highest since."""
+    fallen = run.highest("success_rate") - run.now("success_rate")
+    return max(*map(abs, _gains(run)), fallen) <= _CHANGE
+
+
 def _most(column: str) -> Callable[[RecentCurves], bool]:
     return lambda run: run.now("success_rate") == 0.0 and run.now(column) >= _MOST
 
@@ -78,5 +84,5 @@ RULES: Final = (
     ),
     CaptionRule("rises", _rises, praises=True),
     CaptionRule("falls", lambda run: max(_gains(run)) < -_CHANGE),
-    CaptionRule("steady", lambda run: max(map(abs, _gains(run))) <= _CHANGE),
+    CaptionRule("steady", _steady),
 )

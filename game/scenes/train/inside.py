@@ -111,9 +111,9 @@ class Inside:
     def _paid_lines(self) -> list[Line]:
         """Return what each part has paid a flight, and the sum."""
         words = [texts.REWARD_PARTS[name] for name in PARTS]
-        parts = zip(words, self.paid.tolist(), strict=True)
-        lines = [Line((word, points(paid, 1)), what) for (word, what), paid in parts]
-        return [*lines, Line((texts.REWARD_SUM, points(float(self.paid.sum()), 1)), lit=True)]
+        paid = [round(each, 1) for each in self.paid.tolist()]  # what is written adds up
+        lines = [Line((word, points(each, 1)), what) for (word, what), each in zip(words, paid, strict=True)]
+        return [*lines, Line((texts.REWARD_SUM, points(sum(paid), 1)), lit=True)]
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the network."""

@@ -49,27 +49,38 @@ def agrees(name: str, figures: dict[str, float], now: float, history: History) -
     return True
 
 
+def curve(*, at: tuple[float, ...], land: tuple[float, ...]) -> History:
+    """A run that lands these shares of its flights at these seconds, and between them along straight lines."""
+    history = History()
+    for row, success in enumerate(np.interp(np.arange(at[-1]), at, land).tolist()):
+        history.append(
+            point(
+                seconds=row,
+                decisions=1000.0 * row,
+                episodes=10.0 * row,
+                success_rate=success,
+                mean_return=100.0,
+                loss=0.05,
+                mean_q=0.7,
+                epsilon=0.05,
+            )
+        )
+    return history
+
+
 def test_a_curve_that_falls_again_is_not_said_to_rise(subtests: pytest.Subtests):
     for last, name in ((0.97, "high"), (0.85, "rises"), (0.75, None)):
         peak = 0.97 if last == 0.75 else last
-        curve = np.interp(np.arange(300), (0, 200, 240, 280, 300), (0.2, 0.6, 0.6, peak, last))
         with subtests.test(last=last):
-            history = History()
-            for row, success in enumerate(curve.tolist()):
-                history.append(
-                    point(
-                        seconds=row,
-                        decisions=1000.0 * row,
-                        episodes=10.0 * row,
-                        success_rate=success,
-                        mean_return=100.0,
-                        loss=0.05,
-                        mean_q=0.7,
-                        epsilon=0.05,
-                    )
-                )
+            history = curve(at=(0, 200, 240, 280, 300), land=(0.2, 0.6, 0.6, peak, last))
             found = caption(RecentCurves(history, Config()))
             assert (found.name if found else None) == name
+
+
+def test_a_curve_that_falls_from_90_to_81_is_not_said_to_be_steady():
+    for last in (0.9, 0.88, 0.84, 0.81):
+        found = caption(RecentCurves(curve(at=(0, 60, 260, 300), land=(0.2, 0.85, 0.9, last)), Config()))
+        assert (found is not None and found.name == "steady") == (last >= 0.88), last
 
 
 @cache
