@@ -118,7 +118,7 @@ def drawn() -> Callable[[list[Sprite]], tuple[int, int, int]]:
     def draw(sprites: list[Sprite]) -> tuple[int, int, int]:
         canvas = Canvas(pygame.Surface((1280, 720)))
         poses = np.array([[*sprite.body.position[0], sprite.body.angle[0]] for sprite in sprites])
-        Outlines(sprites).draw(canvas, View(1.0, (0.0, 0.0)), poses, None, False)
+        Outlines(sprites).draw(canvas, View(1.0, (0.0, 0.0)), poses)
         red, green, blue, _ = canvas.surface.get_at(MIDDLE)
         return red, green, blue
 
