@@ -9,6 +9,7 @@ from weakref import ref
 
 import pygame
 
+from game.core import texts
 from game.drawing.canvas import Canvas
 
 T = TypeVar("T")
@@ -34,7 +35,7 @@ class PaintCache:
     ) -> None:
         """Draw a picture with its origin at the corner of `box`; call `paint` only for a new `shows`, its contents."""
         x, y, width, height = pygame.FRect(box)
-        key = (canvas.scale, canvas.type, canvas.palette, width, height, shows)
+        key = (canvas.scale, canvas.type, canvas.palette, texts.LANGUAGE, width, height, shows)
         painted = self._painted.get(key)
         if painted is None:
             if len(self._painted) >= self._most:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -35,7 +34,6 @@ class HintRow:
     Attributes:
         hints: the hints, from left to right.
         position: left end of the baseline, or its right end if `from_right`, in points.
-        room: width in points that the row may take; a longer one is written smaller.
 
     """
 
@@ -43,7 +41,6 @@ class HintRow:
     position: Point
     from_right: bool = False
     size: float = SMALL
-    room: float = math.inf
 
     @property
     def top(self) -> float:
@@ -51,17 +48,15 @@ class HintRow:
         return self.position[1] - _LINE
 
     def width(self, canvas: Canvas) -> float:
-        _, widths = self._fitted(canvas)
-        return _length(widths)
+        return _length(self._widths(canvas))
 
     def boxes(self, canvas: Canvas) -> list[pygame.FRect]:
         """Return the box, in points, in which each hint can be clicked."""
-        _, widths = self._fitted(canvas)
-        return self._boxes(widths)
+        return self._boxes(self._widths(canvas))
 
     def draw(self, canvas: Canvas) -> None:
         """Write the hints; the one below the mouse stands out if it can be clicked."""
-        size, widths = self._fitted(canvas)  # once: measuring words costs as much as writing them
+        size, widths = self.size, self._widths(canvas)  # once: measuring words costs as much as writing them
         for hint, width, box in zip(self.hints, widths, self._boxes(widths), strict=True):
             pointed = hint.run and canvas.pointer is not None and box.collidepoint(canvas.pointer)
             x, y = box.x + _BESIDE, self.position[1]
@@ -77,22 +72,12 @@ class HintRow:
             x += width + _GAPS[1]
         return boxes
 
-    def _fitted(self, canvas: Canvas) -> tuple[float, list[float]]:
-        """Return the size at which the hints fit, and each one's width at that size."""
-        size, widths = self.size, self._widths(canvas, self.size)
-        if self.room < math.inf:
-            gaps = len(widths) * _GAPS[0] + (len(widths) - 1) * _GAPS[1]  # gaps do not shrink
-            for _ in range(2):  # text that is made larger does not shrink in proportion
-                wide = _length(widths)
-                if wide <= self.room:
-                    break
-                size *= min(1.0, (self.room - gaps) / max(wide - gaps, 1.0))
-                widths = self._widths(canvas, size)
-        return size, widths
-
-    def _widths(self, canvas: Canvas, size: float) -> list[float]:
+    def _widths(self, canvas: Canvas) -> list[float]:
+        """Return the width of each hint."""
         return [
-            canvas.text_width(key, size=size, weight="medium") + _GAPS[0] + canvas.text_width(meaning, size=size)
+            canvas.text_width(key, size=self.size, weight="medium")
+            + _GAPS[0]
+            + canvas.text_width(meaning, size=self.size)
             for key, meaning, _ in self.hints
         ]
 

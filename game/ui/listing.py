@@ -42,7 +42,6 @@ class ListRow(RowWidget):
         columns: distance from the right end to the right end of each cell after the first, in points.
         pitch: of the rows, in points.
         size: of the names.
-        numbered: width of a column before the names for the rows' numbers, from 1, in points; 0 for none.
 
     """
 
@@ -59,11 +58,10 @@ class ListRow(RowWidget):
         columns: Sequence[float] = (0.0,),
         pitch: float = 32,
         size: float = TEXT,
-        numbered: float = 0.0,
     ) -> None:
         super().__init__(NOWHERE, "")
         self._on_choose, self._on_press, self._empty = on_choose, press, empty
-        self._columns, self._pitch, self._size, self._numbered = columns, pitch, size, numbered
+        self._columns, self._pitch, self._size = columns, pitch, size
         self._around, self._most, self.first = around, _ROWS, first
         self._pressed = -1
         self.rows = list(rows)
@@ -156,21 +154,19 @@ class ListRow(RowWidget):
 
     def _paint_row(self, canvas: Canvas, row: Row, place: tuple[float, float, float], number: int) -> None:
         left, top, right = place
-        chosen, name = number == self.index, left + self._numbered
+        chosen = number == self.index
         baseline = top + 0.62 * self._pitch
         words, *cells = row
-        room = right - name
+        room = right - left
         before = math.inf
         for cell, column in zip(cells, self._columns, strict=False):
             end, beside = right - column, before - column - _BETWEEN
             box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True, room=beside)
             before = column
-            room = min(room, box.left - name - 24)
+            room = min(room, box.left - left - 24)
         colour = INK if chosen else mix(MUTE, INK, 0.35)
         words = shortened(canvas, words, self._size, room)
-        canvas.text(words, (name, baseline), size=self._size, colour=colour, room=room)
-        if self._numbered:
-            canvas.text(str(number + 1), (left, baseline), size=self._size, colour=colour, room=self._numbered - 6)
+        canvas.text(words, (left, baseline), size=self._size, colour=colour, room=room)
         canvas.line((left, top + self._pitch - 1), (right, top + self._pitch - 1), LINE, 1)
         if chosen:
             canvas.line((left - 7, top + 0.26 * self._pitch), (left - 7, top + 0.76 * self._pitch), NET, 2)

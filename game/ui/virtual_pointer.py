@@ -24,47 +24,6 @@ _EDGE: Final = 2.0
 _NOWHERE: Final = (-1.0, -1.0)
 
 
-class HeldDirections:
-    """Directions that are held; x to the right, y down."""
-
-    def __init__(self) -> None:
-        self.clear()
-
-    def clear(self) -> None:
-        self._arrows: dict[int, Command] = {}  # by the code of the key or button
-        self._stick = [0.0, 0.0]
-
-    def press(self, code: int | None, command: Command | None) -> bool:
-        """Hold a key or button by its code; return whether its command is a direction."""
-        if code is None or command not in DIRECTIONS:
-            return False
-        self._arrows[code] = command
-        return True
-
-    def release(self, code: int | None) -> bool:
-        """Let go of a key or button; return whether it was held."""
-        return self._arrows.pop(code or 0, None) is not None
-
-    def tilt(self, event: pygame.event.Event) -> bool:
-        """Follow the stick; return whether the event was one of its."""
-        if event.type != pygame.CONTROLLERAXISMOTION or event.axis not in _STICK:
-            return False
-        share = event.value / 32767
-        self._stick[_STICK.index(event.axis)] = share if abs(share) > _DEAD else 0.0
-        return True
-
-    @property
-    def stick(self) -> pygame.Vector2:
-        """Position of the stick, -1 to 1 along each axis."""
-        return pygame.Vector2(self._stick)
-
-    @property
-    def arrows(self) -> pygame.Vector2 | None:
-        """Sum of the directions of all keys and buttons that are held; None if none is."""
-        ways = [pygame.Vector2(DIRECTIONS[command]) for command in self._arrows.values()]
-        return sum(ways, pygame.Vector2()) if ways else None
-
-
 class VirtualPointer(Widget):
     """Virtual pointer: Enter or a gamepad's A activates it, and then is its mouse button; Escape or B ends it.
 
@@ -92,7 +51,8 @@ class VirtualPointer(Widget):
         super().__init__(box, texts.POINTER)
         self._hear, self._hold, self._leave, self._pace = tell, hold, leave or texts.POINTER_LEAVE, pace
         self.place = pygame.Vector2(self.box.center)
-        self._held = HeldDirections()
+        self._arrows: dict[int, Command] = {}  # that are held, by the code of the key or button
+        self._stick = pygame.Vector2()
         self._pressed_by: int | None = None  # the key or gamepad button that holds the mouse button down
 
     def press(self) -> None:
@@ -115,11 +75,13 @@ class VirtualPointer(Widget):
             return False
         code = getattr(event, "key", getattr(event, "button", None))
         if event.type in (pygame.KEYUP, pygame.CONTROLLERBUTTONUP):
-            self._held.release(code)
+            self._arrows.pop(code or 0, None)
             if code == self._pressed_by:
                 self._lift()
             return True
-        if self._held.tilt(event):
+        if event.type == pygame.CONTROLLERAXISMOTION and event.axis in _STICK:
+            share = event.value / 32767
+            self._stick[_STICK.index(event.axis)] = share if abs(share) > _DEAD else 0.0
             return True
         if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
             self.lay_aside()
@@ -133,8 +95,8 @@ class VirtualPointer(Widget):
         if code is not None and command is Command.CONFIRM:
             self._tell(pygame.MOUSEBUTTONDOWN)
             self._pressed_by = code
-        elif self._held.press(code, command):
-            pass
+        elif code is not None and command in DIRECTIONS:
+            self._arrows[code] = command
         elif command in (Command.BACK, Command.PAUSE, Command.UNPLUGGED):
             self.lay_aside()
         else:
@@ -147,9 +109,10 @@ class VirtualPointer(Widget):
             self.lay_aside()
         if not self.typing:
             return
-        way, arrows = self._held.stick, self._held.arrows
-        if arrows is not None:
-            way = arrows.normalize() if arrows else arrows
+        way = self._stick
+        if self._arrows:
+            way = sum((pygame.Vector2(DIRECTIONS[command]) for command in self._arrows.values()), pygame.Vector2())
+            way = way.normalize() if way else way
         if not way:
             return
         box = self.box.inflate(-2 * _EDGE, -2 * _EDGE)
@@ -163,7 +126,8 @@ class VirtualPointer(Widget):
         if not self.typing:
             return
         self.typing = False
-        self._held.clear()
+        self._arrows.clear()
+        self._stick.update(0, 0)
         self._lift()
         self._hear(pygame.Event(pygame.MOUSEMOTION, pos=_NOWHERE, rel=(0, 0), buttons=(0, 0, 0)))
 

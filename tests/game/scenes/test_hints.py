@@ -1,7 +1,6 @@
 """Hints and actions: what they name, do and sound like; `tests/game/tour` asks each whether all ways run the same."""
 
 import pygame
-import pytest
 
 from ai.lander.missions import FIRST, MISSIONS
 from game.core import texts
@@ -70,17 +69,6 @@ def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn(contex
     written = (pygame.surfarray.array3d(canvas.surface) != before).any(axis=(1, 2)).nonzero()[0]
     assert again.left <= written.min()
     assert written.max() <= turn.right
-
-
-@pytest.mark.parametrize("from_right", [False, True])
-def test_a_row_without_room_is_written_smaller(from_right: bool):
-    canvas = Canvas(pygame.Surface(VIEW_SIZE))
-    hints = [Hint("Space", "stop the time"), Hint("Period", "the next decision")]
-    wide, narrow = (HintRow(hints, (600, 100), from_right, room=room) for room in (1000, 160))
-    assert wide.width(canvas) > narrow.width(canvas)
-    assert narrow.width(canvas) == pytest.approx(160, abs=3)
-    ends = {row.boxes(canvas)[-1].right - 6 if from_right else row.boxes(canvas)[0].left + 6 for row in (wide, narrow)}
-    assert ends == {600}
 
 
 def test_every_sign_is_drawn_and_looks_like_no_other():
