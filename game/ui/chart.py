@@ -124,7 +124,7 @@ class Chart:
         first = not any(run.last() is not None for run in self.runs)
         self.runs, self.x_range, self._ticks, self.caption = runs, span, tuple(ticks), caption
         self._x_ends = tuple(dict.fromkeys((start, max(start, end))))
-        within = [run.within(span) for run in runs]
+        within = [plotting.calm(run.within(span)) for run in runs]
         shown = plotting.robust_range(np.concatenate(within)) if within and not self.fixed else None
         if shown is not None:
             self._lines = plotting.steady_grid(shown, self._lines, self._make_grid)

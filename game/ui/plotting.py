@@ -16,6 +16,7 @@ Numbers = npt.NDArray[np.floating[Any]]
 Bools = npt.NDArray[np.bool_]
 Limits = tuple[float, float]
 
+_OUTBURST: Final = 4.0  # times the span of a curve's beginning and end
 _WILD: Final = 300.0  # a range this many times wider than the interquartile range is cut
 _WITHIN: Final = 10.0  # interquartile ranges on either side to which it is cut
 _MOST_LINES: Final = 4
@@ -55,6 +56,18 @@ def round_number(value: float) -> str:
         if abs(value) >= 10 * unit:
             return f"{value / unit:.4g}{letter}".replace("-", "−")
     return f"{value:.6g}".replace("-", "−")
+
+
+def calm(values: Numbers) -> Numbers:
+    """Return values (n,) in the order of time, without an outburst that is over and would flatten all else.
+
+    That is what lies between the first fifth and the last two fifths, if it spans several times as much as those.
+    """
+    ends = np.concatenate([values[: len(values) // 5], values[-2 * len(values) // 5 :]])
+    whole, rest = robust_range(values), robust_range(ends)
+    if whole is None or rest is None or not 0 < _OUTBURST * (rest[1] - rest[0]) < whole[1] - whole[0]:
+        return values
+    return ends
 
 
 def robust_range(values: Numbers) -> Limits | None:

@@ -94,6 +94,7 @@ class FlownFlight:
         clear: the part of the screen in which to show the flight.
         futures: the six futures, once somebody has asked; None before.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
+        goal: what there is to fly for, in a sentence; empty for nothing of its own.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
         age: steps of 1/60 s since it was first shown, whether or not it flies.
@@ -110,6 +111,7 @@ class FlownFlight:
         self.begun = False
         self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
         self.record: Record | None = None
+        self.goal = ""
         rules = challenge.rules
         self._policy = None if rules.alone else network.policy
         easing = eased(self._settings) if rules.eases else AS_IT_IS

@@ -364,3 +364,16 @@ def test_an_axis_that_begins_later_has_its_ends_at_the_ends_of_the_plot(canvas: 
     places = [chart.place(value, 0.5)[0] for value in (10.0, 15.0, 20.0)]
     assert places == pytest.approx([chart.plot.left, chart.plot.centerx, chart.plot.right])
     assert [chart.x_at((place, chart.plot.centery)) for place in places] == pytest.approx([10.0, 15.0, 20.0])
+
+
+def test_an_outburst_does_not_flatten_a_chart_for_ever():
+    def limits(after: int) -> tuple[float, float]:
+        """Limits so many points after an outburst, of a curve that has climbed from -200 to 150."""
+        climb, burst = np.linspace(-200.0, 150.0, 40), np.linspace(-3000.0, -2500.0, 40)
+        values = np.concatenate([climb, burst, np.linspace(100.0, 150.0, after)])
+        chart = Chart((0, 0, 300, 100), "SCORE")
+        chart.set([Series(np.arange(len(values)), values, "run")], (0.0, len(values)))
+        return chart.limits
+
+    assert limits(0)[0] < -2000.0, "while it lasts, it is shown"
+    assert -500.0 < limits(120)[0] <= -200.0, "and then the climb before it is seen again"
