@@ -41,7 +41,6 @@ from typing import Any
 
 import numpy as np
 import pygame
-from game.scenes.play.choices import ChoicesScene
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
@@ -153,9 +152,6 @@ def rows() -> dict[str, Row]:
         "pause": over_play(lambda below: PauseScene(below.context, below)),
         "dialog": over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)])),
         "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
-        "choices": over_play(
-            lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
-        ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         "watch": Row(lambda context: WatchScene(context, seed=4)),
         "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
