@@ -354,9 +354,7 @@ class FlownFlight:
                 self._earth = self.clear.earth(EARTH, EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
-            if (
-                abs(self.scenery.across - self._earth[0]) < _BESIDE * EARTH_RADIUS
-            ):  # behind the craft
+            if abs(self.scenery.across - self._earth[0]) < _BESIDE * EARTH_RADIUS:  # behind the craft
                 self._earth = VIEW_SIZE[0] - self._earth[0], self._earth[1]
 
     def _clear_of(self, head: Head) -> ClearArea:
