@@ -41,7 +41,6 @@ from typing import Any
 
 import numpy as np
 import pygame
-from game.scenes.play.choices import ChoicesScene
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
@@ -65,7 +64,7 @@ from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.descent import Descent
-from game.scenes.play.pause import PauseScene
+from game.scenes.play.pause import FlightPauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
 from game.scenes.train.landers import LanderView
@@ -150,12 +149,9 @@ def rows() -> dict[str, Row]:
             f"mission, {name}": Row(lambda context, m=m: PlayScene(context, 0, challenge=FlownMission(m)), FLOWN)
             for name, m in MISSIONS.items()
         },
-        "pause": over_play(lambda below: PauseScene(below.context, below)),
+        "pause": over_play(lambda below: FlightPauseScene(below.context, below), (pygame.K_DOWN, pygame.K_RIGHT)),
         "dialog": over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)])),
         "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
-        "choices": over_play(
-            lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
-        ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         "watch": Row(lambda context: WatchScene(context, seed=4)),
         "watch, many": Row(lambda context: WatchScene(context, seed=4, many=True)),
