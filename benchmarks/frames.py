@@ -64,7 +64,7 @@ from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.descent import Descent
-from game.scenes.play.pause import PauseScene
+from game.scenes.play.pause import FlightPauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.laboratory import Chosen
 from game.scenes.train.landers import LanderView
@@ -149,7 +149,7 @@ def rows() -> dict[str, Row]:
             f"mission, {name}": Row(lambda context, m=m: PlayScene(context, 0, challenge=FlownMission(m)), FLOWN)
             for name, m in MISSIONS.items()
         },
-        "pause": over_play(lambda below: PauseScene(below.context, below)),
+        "pause": over_play(lambda below: FlightPauseScene(below.context, below), (pygame.K_DOWN, pygame.K_RIGHT)),
         "dialog": over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)])),
         "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),

@@ -79,8 +79,9 @@ class NeuralNetwork:
     @values.setter
     def values(self, values: npt.ArrayLike) -> None:
         values = np.asarray(values)
-        if values.shape != self._values.shape:
-            raise ValueError(f"the network has {self._values.size:,} parameters, in one row, not {values.shape}")
+        if values.shape != self._values.shape or values.dtype.kind not in "fiub":
+            given = f"{values.dtype} of shape {values.shape}"
+            raise ValueError(f"the network has {self._values.size:,} real parameters, in one row, not {given}")
         self._values[...] = values
 
     @property

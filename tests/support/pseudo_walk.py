@@ -136,9 +136,9 @@ def frame(number: int) -> Happens:
     return show
 
 
-def measured(driver: Driver) -> None:
-    """Show an exhibit's law and what has been measured, and its contacts."""
-    driver.keys(pygame.K_g, pygame.K_c)
+def contacts(driver: Driver) -> None:
+    """Show an exhibit's contacts."""
+    driver.key(pygame.K_c)
     driver.skip(130)
 
 
@@ -215,7 +215,7 @@ STATES = [
     Stop("TrainScene", "an earlier moment", rewound),
     Stop("DigitTrainingScene", "training to read", taught_to_read),
     *(Stop("LessonScene", f"frame {number + 1}", frame(number)) for number in range(5)),
-    Stop("PhysicsScene", "a law", measured),
+    Stop("PhysicsScene", "contacts", contacts),
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
     Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),

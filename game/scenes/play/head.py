@@ -249,7 +249,7 @@ def _asides(flown: FlownFlight, words: Words) -> list[str]:
     lines = [
         texts.HELP_NOT_HERE.format(more=more) if off and flown.challenge.rules.kept and before else "",
         credit.header if credit.alone and not flight.over else "",
-        credit.notice or words.goal,
+        credit.notice or words.goal or flown.goal,
         words.eased if credit.bar == "assists" and before else "",
         texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and beside else "",
         *surroundings(flight.env),

@@ -24,7 +24,7 @@ from game.scenes.play.card import ShownCard
 from game.scenes.play.challenge import Challenge, Duel, Words
 from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
-from game.scenes.play.free import FreeFlight
+from game.scenes.play.free import FreeFlight, rung_of
 from game.scenes.play.head import Head, head_of
 from game.scenes.play.keys import card_actions, flight_actions
 from game.scenes.play.sitting import Sitting
@@ -329,6 +329,8 @@ class PlayScene(Scene):
             self.context, self._records, self.network, self.challenge, self._helped, seed, spawn
         )
         self.flight, self.credit, self.ending = flown.flight, flown.credit, flown.ending
+        if self.challenge.rules.free and rung_of(self.flight) is None:
+            flown.goal = self._sitting.goals.next
 
     def _begin_anew(self) -> None:
         self._begin(int(self.context.rng.integers(2**31)))

@@ -139,7 +139,7 @@ class TasteScene(PanelScene):
 
     def _write_liking(self, number: int, word: str, cursor: Cursor) -> None:
         """Draw how much of a sum is liked, to the right, or disliked, to the left, and how sure that is."""
-        cursor.gap(2)
+        cursor.gap(1)
         label = cursor.column(cursor.left, (_MIDDLE - _BAR) * cursor.width - 8)
         label.styled(word, SMALL, INK)
         if (canvas := cursor.canvas) is not None:

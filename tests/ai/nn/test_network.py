@@ -181,7 +181,7 @@ def test_the_flat_vector_is_the_layers_and_a_later_layer_joins_it():
     np.testing.assert_array_equal(network.layers[0].weights.ravel(), np.arange(32))
     network.layers[0].bias[...] = -1
     np.testing.assert_array_equal(network.values[32:48], -1)
-    with pytest.raises(ValueError, match="65 parameters"):
+    with pytest.raises(ValueError, match="65 real parameters"):
         network.values = np.zeros(3)
     before = network.values.copy()
     network.add_layer(FullyConnectedLayer(1, 2))

@@ -80,7 +80,7 @@ def test_what_is_no_input_is_refused_in_a_sentence(what):
 
 
 def test_wrong_values_rates_and_numbers_are_refused_in_a_sentence():
-    for values in (1.0, np.ones(3), np.ones((36, 1))):
+    for values in (1.0, np.ones(3), np.ones((36, 1)), np.zeros(network().values.size, complex)):
         with pytest.raises(ValueError, match="parameters, in one row"):
             network().values = values
     for make in (SGD, Adam, lambda rate: network().train(X, Y, learning_rate=rate)):
