@@ -19,6 +19,7 @@ from game.core import texts
 from game.core.clock import TimeScale
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
 from game.flight.choosers import Alone, steered
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _WAITING: Final = 196.0  # points at the head for the words over a craft that waits, before they are laid out
+_BESIDE: Final = 3.0  # radii of the Earth that a craft that waits keeps from it
 _BELOW_HEAD: Final = 44.0  # and between the words and the craft
 _LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _CATCHES_UP: Final = 6  # steps of the network's own flight in a frame, once the player's is over
@@ -352,6 +354,8 @@ class FlownFlight:
                 self._earth = self.clear.earth(EARTH, EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
+            if abs(self.scenery.across - self._earth[0]) < _BESIDE * EARTH_RADIUS:  # behind the craft
+                self._earth = VIEW_SIZE[0] - self._earth[0], self._earth[1]
 
     def _clear_of(self, head: Head) -> ClearArea:
         reading = self.context.reading()

@@ -145,7 +145,7 @@ class Beside:
 
 
 class TrainingCharts(Charts):
-    """Charts over the seconds of a run. All of them show the same moment: they are set, and painted, together."""
+    """Charts over the seconds of a run, each with what is said of it, as they were looked at last."""
 
     def __init__(self, kinds: Mapping[str, ChartKind]) -> None:
         self._kinds = kinds
@@ -156,6 +156,7 @@ class TrainingCharts(Charts):
         ]  # fmt: skip
         super().__init__(self._all)
         self._history = History()
+        self._due: list[Callable[[], None]] = []
         self.show(more=False)
 
     def show(self, *, more: bool) -> None:
@@ -170,6 +171,7 @@ class TrainingCharts(Charts):
     def take(self, history: History, beside: Beside, said: str, moment: int | None) -> None:
         """Show a run as far as it has come, and those beside it; `said` stands below the first chart."""
         self._history = history
+        self._due.clear()
         this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
         runs = [each for each in (this, *beside.runs) if len(each.run)]
         for (name, kind), chart in zip(self._kinds.items(), self._all, strict=True):
@@ -177,10 +179,14 @@ class TrainingCharts(Charts):
             words = said if chart is self._all[0] else ""
             if name == SCORE and beside.paid_otherwise:
                 words = texts.LAB_PAID_OTHERWISE
-            self._set(kind, chart, compared, words)
+            self._due.append(partial(self._set, kind, chart, compared, words))
+        self.go_on()
         self.go_to(moment)
-        for chart in self.charts:
-            chart.renew()
+
+    def go_on(self) -> None:
+        """Show the next chart as it was looked at: one a frame, which spreads the load; the first one at once."""
+        if self._due:
+            self._due.pop(0)()
 
     def _set(self, kind: ChartKind, chart: Chart, runs: Sequence[EarlierRun], said: str) -> None:
         series = []
@@ -193,6 +199,7 @@ class TrainingCharts(Charts):
         ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
         ticks = ticks_of(self._history) if chart is self._all[0] else ()
         chart.set(series, (0.0, max([_SHORTEST, *ends])), ticks, said)
+        chart.renew()
 
     def _both(self, kind: ChartKind) -> str:
         """Say what both curves of a chart are, by their latest numbers; empty before there are any."""

@@ -301,6 +301,7 @@ class TrainScene(FormScene):
         beside = view.beside
         urgent = view.moment, [(each.name, each.style) for each in beside.runs], self.run.state, self.charts.charts
         if self._frame % _LOOKS and self._seen == urgent:
+            self.charts.go_on()
             return
         self._seen = urgent
         self.charts.take(history, beside, view.caption(), view.moment)

@@ -48,6 +48,8 @@ def looked(
     charts: TrainingCharts, history: History, beside: Beside | None = None, moment: int | None = None
 ) -> TrainingCharts:
     charts.take(history, beside or Beside(), "", moment)
+    for _ in charts.charts:
+        charts.go_on()
     return charts
 
 
