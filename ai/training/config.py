@@ -121,7 +121,7 @@ GYM: Final = Config(
     learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=300_000, discount=0.985, n_step=3,
     batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
     epsilon_end=0.02, epsilon_spread=0.7, hidden=(64, 64), activation="relu", target_judges=True, double=True,
-    tau=0.005, final_tau=1.0, reward_scale=0.01, spawn="thorough",
+    tau=0.005, final_tau=1.0, reward_scale=0.01,
 )  # fmt: skip
 
 # Found by trial on LunarLander-v3 alone: docs/environments.md says what each did. A slow descent burns fuel, so a small
