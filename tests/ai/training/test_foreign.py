@@ -30,7 +30,6 @@ from tests.support import odd_environments as odd
 MODULE = "tests.support.odd_environments"
 ROOT = Path(__file__).parents[3]
 QUICK = {"num_envs": 4, "learning_starts": 64, "hidden": (8,), "gradient_steps": 1, "epsilon_decisions": 500}
-QUICK["frame_skip"] = 1
 
 
 def name(kind):
@@ -214,10 +213,7 @@ def test_a_nan_is_never_the_best():
 
 
 def test_training_keeps_what_there_was_before_an_environment_failed_and_goes_on_from_there(tmp_path, capsys):
-    out, sets = (
-        tmp_path / "run",
-        ["--set=num_envs=4", "--set=frame_skip=1", "--set=hidden=[8]", "--set=learning_starts=64"],
-    )
+    out, sets = tmp_path / "run", ["--set=num_envs=4", "--set=hidden=[8]", "--set=learning_starts=64"]
     for kind, said in (("LoseConnection", "ConnectionResetError"), ("NanSeen", "is nan at place 1")):
         command = ["train", "--env", name(kind), "--decisions", "4000", "--output", str(out), "--replace", *sets]
         assert main(command) == 1
@@ -260,7 +256,7 @@ def test_names_that_are_no_environments_are_refused_in_a_sentence(tmp_path, caps
 
 def test_arguments_of_an_environment_are_given_kept_and_evaluated_with(tmp_path, capsys):
     out = str(tmp_path / "run")
-    sets = ["--set=num_envs=2", "--set=frame_skip=1", "--set=hidden=[8]", "--validation", "2"]
+    sets = ["--set=num_envs=2", "--set=hidden=[8]", "--validation", "2"]
     command = ["train", "--env", name("Odd"), "--env-set", "length=7", "--decisions", "40", "--output", out, *sets]
     assert main(command) == 0
     capsys.readouterr()
