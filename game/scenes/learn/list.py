@@ -24,7 +24,7 @@ from game.ui.widget import OnPress
 
 _KEYS: Final = tuple(PATH)
 _LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
-_PITCH, _NUMBERED = 34.0, 32.0  # of a row of the list, and of its number
+_PITCH: Final = 34.0  # of a row of the list
 _COLUMNS: Final = (72.0, 0.0)  # from the right end of the list: where minutes and progress end
 
 
@@ -66,7 +66,6 @@ class LearnScene(PanelScene):
         self._list = left.listing(
             [self._row(key) for key in PATH], lambda _: self._open(), around=_AROUND, index=_KEYS.index(self.chosen),
             first=self._list.first if self._list else 0, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
-            numbered=_NUMBERED,
         )  # fmt: skip
         right.title(lambda: texts.LEARN[self.chosen]["title"], TITLE + 4)
         right.text(lambda: texts.LEARN[self.chosen]["question"])

@@ -329,7 +329,8 @@ def test_a_parameter_takes_values_of_its_shape_and_refuses_others():
     weights.gradient = np.ones((3, 2))
     np.testing.assert_array_equal(network.values[:8], [0, 1, 2, 3, 4, 5, -1, -1])
     np.testing.assert_array_equal(network.gradients[:6], 1)
-    for wrong in (np.ones(2), np.ones((3, 2), complex), "fast", None):
+    unfit: tuple[Any, ...] = (np.ones(2), np.ones((3, 2), complex), "fast", None)
+    for wrong in unfit:
         with pytest.raises(ValueError, match=r"weights are numbers of shape \(3, 2\), not"):
             weights.value = wrong
 

@@ -82,12 +82,12 @@ def test_no_bronze_is_called_perfect(monkeypatch):
         assert concluded(FlownMission(MISSIONS["fall"]), flight).title == title
 
 
-def test_time_outs_are_no_crashes():
+def test_time_outs_are_no_crashes(monkeypatch):
     flight = begun(3)
     flight.env.steps[:] = round(60 * float(flight.env.limits.time)) - 1
     flight.step(KEYS[0])
     assert flight.outcome is Outcome.TIMED_OUT
-    flight.chooser.copilot = SimpleNamespace(assist=0.0)
+    monkeypatch.setattr(flight.chooser, "copilot", SimpleNamespace(assist=0.0))
     credit = Credit(flight, Settings(), Rules())
     challenge = SimpleNamespace(rules=Rules())
     flown = SimpleNamespace(flight=flight, credit=credit, challenge=challenge, helped=Settings(help="off"))
