@@ -11,7 +11,7 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.core.settings import HELP, TOP_RUNG
-from game.drawing.tokens import INK
+from game.drawing.tokens import INK, MUTE, SMALL, TEXT
 from game.explain.explained import Explained
 from game.explain.readouts import GAUGES, foot_of
 from game.flight import networks
@@ -23,6 +23,7 @@ from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
+    from game.drawing.cursor import Cursor
     from game.scenes.play.scene import PlayScene
     from game.ui.context import Context
     from game.ui.panel import Panel
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 _WORD: Final = 20.0
 _COLUMN: Final = 90.0  # points that a column of entries needs
+_LOW: Final = 420.0  # points of a low window
+_EDGE: Final = 12.0  # points between the panel and the edge of the window
 _COVER: Final = 0.94  # opacity: the Earth does not shine through the words
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
@@ -65,21 +68,21 @@ class PauseScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        panel.title(texts.PAUSE_TITLE, 36.0, "extralight")
-        self.describe_below(panel)
-        panel.gap(8)
+        self.describe_head(panel)
         retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
         rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
         self.describe_entries(panel, rows)
 
+    def describe_head(self, panel: Panel) -> None:
+        """Add what stands above the entries."""
+        panel.title(texts.PAUSE_TITLE, 36.0, "extralight")
+        panel.gap(8)
+
     def describe_entries(self, panel: Panel, rows: Sequence[tuple[str, OnPress]]) -> None:
         """Add the entries."""
         for label, press in rows:
             panel.button(label, press, size=_WORD, weight="light", colour=INK)
-
-    def describe_below(self, panel: Panel) -> None:
-        """Add what is to be said of the scene below."""
 
     def actions(self) -> Table:
         return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, texts.HINT_RESUME)]
@@ -128,14 +131,27 @@ class FlightPauseScene(PauseScene):
             for label, press in part:
                 column.button(label, press, size=_WORD, weight="light", colour=INK)
 
-    def describe_below(self, panel: Panel) -> None:
-        """Add which flight it is, and what is to be known of it."""
+        panel.add(lambda cursor: self._write_about(cursor) if self._low else None)
+
+    def describe_head(self, panel: Panel) -> None:
+        title, low_title = 36.0, 22.0
+        panel.add(lambda cursor: cursor.styled(texts.PAUSE_TITLE, low_title if self._low else title, INK, "extralight"))
+        panel.add(lambda cursor: None if self._low else self._write_about(cursor))
+        panel.add(lambda cursor: cursor.gap(0 if self._low else 8))
+
+    @property
+    def _low(self) -> bool:
+        """Whether the window is so low that the entries come first, to be in sight."""
+        return self.context.reading().view.height < _LOW
+
+    def _write_about(self, cursor: Cursor) -> None:
+        """Write which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
-        panel.aside(head.caption)
+        cursor.styled(head.caption, SMALL, MUTE)
         if not self._flight.challenge.rules.free:
-            panel.text(head.name)
+            cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
-            panel.aside(words)
+            cursor.styled(words, SMALL, MUTE)
 
     def _describe_starts(self, panel: Panel, *, begun: bool) -> None:
         settings, pads = self.context.settings, texts.CHOICES_PADS_WORDS
@@ -179,13 +195,18 @@ class FlightPauseScene(PauseScene):
         return pygame.FRect(room.left, 28, room.width, min(row.top for row in self.hint_rows(canvas)) - 40)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        left, _ = self._between(canvas)
-        return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), self.most)
+        left, width = self._between(canvas)
+        width = width if self._low else self.most
+        return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), width)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._flight.flown.draw(canvas, 1.0, Head(), whole=True)
-        low = max(row.position[1] for row in self.hint_rows(canvas)) + 12
-        canvas.panel((self.panel.box.left - 24, 12, self.panel.box.width + 48, low - 12), _COVER)
+        rows, box = self.hint_rows(canvas), self.panel.box
+        low = max(row.position[1] for row in rows) + 12
+        left = max(box.left - 24, canvas.view.left + _EDGE)
+        right = box.left + max(box.width, *(row.width(canvas) for row in rows)) + 24
+        right = min(right, canvas.view.right - _EDGE)
+        canvas.panel((left, 12, right - left, low - 12), _COVER)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
