@@ -169,11 +169,12 @@ class ChapterScene(PanelScene):
             column.button(answer, partial(self.begin, number), colour=HUMAN if number == guess else _OPEN)
 
     def _describe_try(self, column: Column) -> None:
-        column.add(self._write_verdict)
         column.text(self.chapter.words["task"], size=_BODY)
         column.gap(6)
         if not self.chapter.problem:
             self.chapter.controls(column)
+        column.gap(6)
+        column.add(self._write_verdict)  # below the controls, which hold still when it changes
 
     def _describe_finding(self, panel: Panel) -> None:
         """Add what the player's tries have shown, and why: the first sentences, and then all of them."""
