@@ -75,7 +75,7 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
     ("descent", partial(PlayScene, seed=4, challenge=Descent()), dict.fromkeys(range(5, 160, HELD), pygame.K_UP), 100),
     ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
-    ("lesson", lesson, {5: pygame.K_RIGHT}, 60),
+    ("lesson", lesson, dict.fromkeys((5, 25, 45), pygame.K_RIGHT), 80),
     ("digits", DigitsScene, {}, 150),
     ("physics", partial(PhysicsScene, exhibit="heap"), {60: pygame.K_c}, 400),
     (
@@ -173,7 +173,7 @@ def _move_pen(scene: DigitsScene, frame: int) -> None:
 
 def _has_learnt(scene: TrainScene) -> bool:
     history = scene.run.history
-    return bool(len(history) and history["success"][-1] > 0.9)
+    return bool(len(history) and history["success_rate"][-1] > 0.9)
 
 
 if __name__ == "__main__":

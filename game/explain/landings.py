@@ -87,12 +87,18 @@ class RecentLandings:
         self._seen = dict.fromkeys(range(NUM_ACTIONS), (Landing.UNKNOWN, 0))  # and how many decisions ago
 
     def fill(self, landings: Landings) -> Landings:
-        """Follow those of another decision; return them, and in place of what is unknown what was seen before."""
+        """Follow those of another decision; return them, and in place of what is unknown what was seen before.
+
+        Of the action that is asked for, only what the decision knew is shown.
+        """
         for action, after in enumerate(landings.after):
             before, age = self._seen[action]
             kept = (before, age + 1) if age < _RECENT else (Landing.UNKNOWN, 0)
             self._seen[action] = kept if after is Landing.UNKNOWN else (after, 0)
-        return replace(landings, after=tuple(after for after, _ in self._seen.values()))
+        rows, (asked, now) = [after for after, _ in self._seen.values()], landings.asked
+        if now is Landing.UNKNOWN is landings.after[asked]:  # that it is not known decided: the row says so too
+            rows[asked] = now
+        return replace(landings, after=tuple(rows))
 
 
 def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, width: float, who: str) -> None:

@@ -199,7 +199,7 @@ def foot_of(canvas: Canvas, names: Iterable[str]) -> pygame.FRect:
     side = min(MARGIN, _SIDES * view.width)
     cursor = Cursor(side, 0.0, view.width - 2 * side)
     _arrange(cursor, tuple(names))
-    return pygame.FRect(side, view.bottom - cursor.y - STEP / 2, cursor.width, cursor.y)
+    return pygame.FRect(side, view.bottom - cursor.y - 2 * STEP, cursor.width, cursor.y)
 
 
 def draw_flight(canvas: Canvas, readouts: Mapping[str, Readout], names: Iterable[str] = GAUGES) -> None:

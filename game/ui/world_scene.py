@@ -76,7 +76,7 @@ class WorldScene(FormScene, ABC):
         hints = _HINTS * len(self.hint_rows(canvas))
         self.foot.lay_out(pygame.FRect(left, 0, width, _MOST * view.height), canvas.scale)
         height = min(self.foot.height, _MOST * view.height)
-        foot = view.bottom - hints - STEP - height
+        foot = view.bottom - hints - 2 * STEP - height
         self.foot.lay_out(pygame.FRect(left, foot, width, height), canvas.scale)
         self.free = pygame.FRect(0, 0, view.width, foot)
         if self.side.rows:
@@ -95,7 +95,7 @@ class WorldScene(FormScene, ABC):
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         view = canvas.view
         margin = min(MARGIN, _SIDES * view.width)
-        return hint_lines(self.hints, canvas, (margin, view.bottom - STEP), view.width - 2 * margin)
+        return hint_lines(self.hints, canvas, (margin, view.bottom - 2 * STEP), view.width - 2 * margin)
 
     def update(self) -> Transition | None:
         outcome = self.form.update()

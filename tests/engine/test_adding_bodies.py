@@ -137,6 +137,7 @@ def test_what_is_refused_sets_nothing():
     assert box.position[0, 1] == pytest.approx(0.5, abs=0.01)
 
 
+@pytest.mark.slow
 def test_each_face_of_a_polygon_of_many_corners_has_a_number_of_its_own():
     for corners in (64, 65, 80, 300):
         turn = np.arange(corners) * 2 * np.pi / corners

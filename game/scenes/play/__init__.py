@@ -1,1 +1,1 @@
-"""Flying: free flights, the tutorial, missions, the start of the day, descents, and what helps the pilot."""
+"""Flying: free flights, the tutorial, missions, today's flight, descents, and what helps the pilot."""

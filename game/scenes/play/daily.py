@@ -1,4 +1,4 @@
-"""Start of the day: its first attempt counts, later ones are practice beside a ghost."""
+"""Today's flight: its first attempt counts, later ones are practice beside a ghost."""
 
 from __future__ import annotations
 

@@ -37,7 +37,8 @@ def flight_actions(scene: PlayScene) -> list[Action]:
     table = [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
     thinks = texts.HINT_THINKS if scene.waiting and flight.chooser.network and not taken else ""
     shows = Action(pygame.K_F1, scene.show_thinking, thinks, Command.MODE)
-    return [*table, shows, Action(Command.MODE, scene.show_thinking)]
+    mode = scene.context.controls.keys.codes(Command.MODE)  # its button is that of F1
+    return [*table, shows, *(Action(code, scene.show_thinking) for code in mode)]
 
 
 def card_actions(scene: PlayScene, go_on: Run) -> list[Action]:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 _WORD: Final = 20.0
+_COLUMN: Final = 90.0  # points that a column of entries needs
 _COVER: Final = 0.94  # opacity: the Earth does not shine through the words
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
@@ -70,6 +71,10 @@ class PauseScene(PanelScene):
         retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
         rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
+        self.describe_entries(panel, rows)
+
+    def describe_entries(self, panel: Panel, rows: Sequence[tuple[str, OnPress]]) -> None:
+        """Add the entries."""
         for label, press in rows:
             panel.button(label, press, size=_WORD, weight="light", colour=INK)
 
@@ -117,6 +122,12 @@ class FlightPauseScene(PauseScene):
         elif not flown.credit.alone:
             panel.button(networks.pause_label(self._flight.network.name), self._open_networks)
 
+    def describe_entries(self, panel: Panel, rows: Sequence[tuple[str, OnPress]]) -> None:
+        half = (len(rows) + 1) // 2  # in two columns, to be in sight in any window
+        for column, part in zip(panel.beside((1, 1), _COLUMN, 24.0), (rows[:half], rows[half:]), strict=True):
+            for label, press in part:
+                column.button(label, press, size=_WORD, weight="light", colour=INK)
+
     def describe_below(self, panel: Panel) -> None:
         """Add which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
@@ -152,7 +163,8 @@ class FlightPauseScene(PauseScene):
         return push("runs", choose=self._flight.choose_network)
 
     def actions(self) -> Table:
-        return [*super().actions(), self.explained.action(), Action(Command.CHOICES, Pop)]
+        again = self.context.controls.keys.codes(Command.CHOICES)  # its button explains here
+        return [*super().actions(), self.explained.action(), *(Action(code, Pop) for code in again)]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return None if self.explained.handle_event(event) else super().handle_event(event)

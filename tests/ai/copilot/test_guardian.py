@@ -138,6 +138,7 @@ def guarded(agent, env, ask, assist=GUARD):
     return overridden, held
 
 
+@pytest.mark.slow
 def test_no_hand_can_crash_a_flight_while_a_plan_is_held(agent):
     rng = np.random.default_rng(0)
 
@@ -154,6 +155,7 @@ def test_no_hand_can_crash_a_flight_while_a_plan_is_held(agent):
         assert (env.outcome == Outcome.LANDED).all(), what
 
 
+@pytest.mark.slow
 def test_whoever_flies_with_a_weak_stick_and_by_share_alone_is_as_safe(agent):
     env, copilot = flights(1), CoPilot(agent, GUARD, "guardian")
     weak = np.tile([0.4, -1.0], (1, 1))

@@ -33,6 +33,7 @@ def alone(site):
     )
 
 
+@pytest.mark.slow
 def test_each_lander_of_a_batch_flies_as_it_would_alone():
     env = AnywhereEnv(len(MIXED), 0, frame_skip=4)
     env.set_sites(MIXED)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.conditions import Conditions
@@ -118,6 +119,7 @@ def glide_both(case, slots=2):
     assert_same(many, alone)
 
 
+@pytest.mark.slow
 def test_a_lander_alone_flies_as_it_does_among_others(subtests):
     for case in CASES:
         with subtests.test(case=case):

@@ -53,6 +53,7 @@ def test_measurements_are_kept_in_their_order_and_are_stale_once_the_file_was_sa
     assert not before.stale(path)
 
 
+@pytest.mark.slow
 def test_the_template_nearly_lands_and_the_example_does(tmp_path: Path):
     for path, aim, least, most in (
         (TEMPLATE, "0.0", 0.05, 0.5),

@@ -165,6 +165,7 @@ def trained(begin, config, name, value):
     return training
 
 
+@pytest.mark.slow
 def test_every_live_knob_makes_a_difference(begin, subtests):
     live = [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "reward_weights"]
     assert len(live) > 20

@@ -229,7 +229,7 @@ def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context,
         reading.driver.key(pygame.K_c)
         words = " ".join(reading.page(2).words)
         assert (texts.HELP_MEANS["guide"] in words) is ("you fall" not in words) is helped
-        reading.driver.keys(*[pygame.K_DOWN] * 4)
+        reading.driver.keys(*[pygame.K_DOWN] * 2)
         reading.driver.keys(*[pygame.K_LEFT if helped else pygame.K_RIGHT] * 3)
         words = " ".join(reading.page(2).words)
         assert (texts.HELP_MEANS["guide"] in words) is ("you fall" not in words) is not helped

@@ -135,6 +135,7 @@ class Switch:
         raise AssertionError(f"{words} is never marked")
 
 
+@pytest.mark.slow
 def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
     """From the menu to a flight, a landing by a slow hand, the card, another start, the pause, and back to the menu."""
     save_settings(context, one_switch=True)

@@ -144,6 +144,7 @@ def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_pa
     assert not half.exists()
 
 
+@pytest.mark.slow
 def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driver, tmp_path: Path):
     digit_run, runs = beside.top.run, tmp_path / "user" / "digits" / "runs"
     beside.key(pygame.K_RETURN)

@@ -68,6 +68,7 @@ def test_a_crash_is_slow_for_under_a_second_more_and_adds_nothing_to_the_flight(
     assert 20 < slowly - frames_to_card(game) < 60
 
 
+@pytest.mark.slow
 def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver):
     """Every effect on, and every effect off: the same, bit for bit, and so is the replay."""
     ends = []

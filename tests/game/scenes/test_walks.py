@@ -101,7 +101,9 @@ def test_settings_are_changed_and_kept(open_screen, device: str):
     player.choose(texts.MENU["settings"][0])
     player.choose(texts.SETTINGS["colour_safe"][0])
     assert player.saved()["colour_safe"] is True
-    player.press("left")
+    player.press("left")  # an arrow that was meant to move on changes nothing
+    assert player.saved()["colour_safe"] is True
+    player.choose(texts.SETTINGS["colour_safe"][0])
     assert player.saved()["colour_safe"] is False
     group(player, "sound")
     while player.form.focused.label != texts.SOUND_GROUPS["effects"]:
