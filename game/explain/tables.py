@@ -58,10 +58,10 @@ def _write_line(cursor: Cursor, line: Line, widths: Sequence[float]) -> None:
     top = cursor.y
     row = replace(cursor, y=top + _PAD, size=SMALL, colour=INK if line.lit else mix(MUTE, INK, 0.35))
     _write_cells(row, line.cells, widths)
-    right = cursor.right
+    right, wide = cursor.right, min(widths) - _APART  # bars side by side have one scale
     for width, (begin, end) in zip(widths[::-1], line.bars[::-1], strict=False):
         if cursor.canvas:
-            left, wide, colour = right - width + _APART, width - _APART, NET if line.lit else mix(FAINT, NET, 0.4)
+            left, colour = right - wide, NET if line.lit else mix(FAINT, NET, 0.4)
             cursor.canvas.bar((left, row.y + 1, wide, _BAR), 0.0, colour)
             if end > begin:
                 length = max((end - begin) * wide, _BAR)

@@ -293,6 +293,7 @@ class TargetChapter(DuelChapter):
 
     def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
         draw_axis(canvas, box, [(float(self.heights(np.array(tick))), word) for tick, word in _TICKS])
+        canvas.text(" ".join(texts.CHART_LOG), (box.left + 4, box.top + 14), size=CAPTION, colour=MUTE)
         y = box.bottom - box.height * float(self.heights(np.array(BOUND)))
         canvas.line((box.left, y), (box.right, y), MUTE, 1.5)
         said = texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}")

@@ -27,9 +27,10 @@ from game.ui.widget import OnPress
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
-_AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
+_AROUND, _LOWEST = 210.0, 0.85  # points above and below the picture; the least share of its height
 _LISTING: Final = 320.0  # height of a listing
 _INDENT: Final = 18.0  # of a verdict, behind its line
+_FOOT: Final = 10.0  # points between the page and the ways on below it
 _FEW: Final = 340  # letters of an explanation, some four lines, before the rest of it is asked for
 _MORE: Final = "learn"  # name in the settings of what stays open
 
@@ -43,6 +44,7 @@ class ChapterScene(PanelScene):
         finding: what the player's tries have shown; empty before.
         came: number of the answer that they have shown; None while they decide nothing.
         in_code: whether the line of code that did it stands in place of the picture.
+        foot: the ways on, which stay in sight below the page however far it has grown.
 
     """
 
@@ -52,7 +54,7 @@ class ChapterScene(PanelScene):
         self.chapter = chapter_type(key)(context)
         # One that is done asks for a guess again.
         self.begun = self._progress.guess(key) is not None and not self._progress.done(key)
-        self.finding, self.in_code = "", False
+        self.finding, self.in_code, self._grown = "", False, False
         self.came: int | None = None
         self._progress.note(key)
         self.build()
@@ -113,11 +115,15 @@ class ChapterScene(PanelScene):
         if self.begun and not chapter.problem:
             chapter.update()
         if chapter.news:
-            chapter.news, chapter.changed = False, chapter.changed or not self.finding
+            chapter.news, chapter.changed, before = False, chapter.changed or not self.finding, self.came
             self._find()
+            self._grown |= self.came != before
         if chapter.changed and not any(widget.held for widget in self.form.widgets):  # or a drag would end
             self.build()
             chapter.changed = False
+        if self._grown and not any(widget.held for widget in self.form.widgets):
+            self._grown = False
+            self.panel.scroll(self.panel.height)  # to what the verdict has brought
         self.explained.update()
         return super().update()
 
@@ -152,8 +158,20 @@ class ChapterScene(PanelScene):
             panel.gap(10)
             panel.line()
             self._describe_finding(panel)
-        panel.gap(10)
-        panel.words(self._ways())
+        self.foot = Panel(self.form)
+        self.foot.words(self._ways())
+
+    def room(self, canvas: Canvas) -> pygame.FRect:
+        whole = super().room(canvas)
+        return pygame.FRect(*whole.topleft, whole.width, whole.height - self.foot.height - _FOOT)
+
+    def lay_out(self) -> None:
+        canvas = self.context.reading()
+        whole = super().room(canvas)
+        self.foot.lay_out(whole, canvas.scale)  # for its height
+        high = self.foot.height
+        self.foot.lay_out(pygame.FRect(whole.left, whole.bottom - high, whole.width, high), canvas.scale)
+        super().lay_out()
 
     def _leave_room(self, cursor: Cursor) -> None:
         """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
@@ -169,11 +187,12 @@ class ChapterScene(PanelScene):
             column.button(answer, partial(self.begin, number), colour=HUMAN if number == guess else _OPEN)
 
     def _describe_try(self, column: Column) -> None:
-        column.add(self._write_verdict)
         column.text(self.chapter.words["task"], size=_BODY)
         column.gap(6)
         if not self.chapter.problem:
             self.chapter.controls(column)
+        column.gap(6)
+        column.add(self._write_verdict)  # below the controls, which hold still when it changes
 
     def _describe_finding(self, panel: Panel) -> None:
         """Add what the player's tries have shown, and why: the first sentences, and then all of them."""
@@ -242,6 +261,7 @@ class ChapterScene(PanelScene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
+        self.foot.draw(canvas)
         if self._picture:
             before = canvas.surface.get_clip()
             canvas.surface.set_clip(canvas.rect(*self._picture.box).clip(canvas.rect(*self.panel.box)).clip(before))

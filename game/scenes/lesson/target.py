@@ -25,7 +25,7 @@ from game.ui.panel import Column
 
 _LEAST: Final = 300.0  # width of a column
 _ERROR: Final = 64.0  # height
-_NETWORK: Final = 230.0
+_NETWORK, _LOWEST = 230.0, 150.0  # height, and the least of it
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_DIGITS: Final = 12
 _DIGITS: Final = 4  # of each, after the point, so that what is written adds up
@@ -49,6 +49,7 @@ class TargetCard(Card):
         self._lesson, self.step, self.back, self._network = lesson, step, False, step.network.copy()
         self._network.gradients[:] = step.taken.gradient
         self.view = NetworkView((0, 0, 700, _NETWORK), step.inputs, step.outputs)
+        self._high = _NETWORK
         self.view.reads_out, self.view.output_scale = False, step.scale
         self.weight = step.steepest()
         self.turn(True)
@@ -68,13 +69,16 @@ class TargetCard(Card):
         if self.weight:
             right.text(texts.LESSON_STEP_OF.format(weight=self.step.weight_name(self.weight)), size=SMALL, colour=HUMAN)
             right.add(table((), partial(self._parts, self.weight)))
+            right.aside(texts.LESSON_STEP_PARTS["rate"][1])
             right.aside(texts.LESSON_ALL_WEIGHTS.format(count=len(self.step.taken.gradient)))
 
     def _write_network(self, cursor: Cursor) -> None:
-        box = cursor.take(_NETWORK)
         if cursor.canvas is None:
-            self.view.place(box)
+            if cursor.seen:  # so that the legend at its foot is in sight below longer words, too
+                self._high = min(max(cursor.seen.bottom - cursor.y, _LOWEST), _NETWORK)
+            self.view.place(cursor.take(self._high))
         else:
+            cursor.take(self._high)
             self._draw(cursor.canvas)
 
     def point(self, place: Point | None) -> None:
@@ -191,7 +195,9 @@ def _values(lesson: Lesson) -> str:
 
 
 def _roles(lesson: Lesson) -> str:
-    """Say which network picks, which one judges, and what comes of it; or what stands in for a second one."""
+    """Say which network picks, which one judges, and what comes of it; what stands in for a second one; or why none."""
+    if lesson.cell.terminal:
+        return texts.LESSON_NOTHING_AFTER
     config, words = lesson.config, texts.LESSON_ROLES_NEWEST
     if lesson.next_online is not None:
         said = [*texts.LESSON_ROLES_DOUBLE]

@@ -267,3 +267,21 @@ def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
     driver.top.begin()
     driver.press_on(texts.LEARN_CODE[False])
     assert texts.LESSON_NO_SOURCE in written(driver, monkeypatch)
+
+
+def test_controls_hold_still_and_the_way_on_stays_in_sight_while_a_page_grows(open_game: Open, context: Context):
+    save_settings(context)
+    driver = open_game(ChapterScene, "plane")
+    scene = driver.top
+    scene.begin(0)
+    driver.frames(2)
+    before = {widget.key: widget.box for widget in scene.form.widgets}
+    driver.frames(400)
+    assert scene.finding
+    after = {widget.key: widget.box for widget in scene.form.widgets}
+    assert before.items() <= after.items()
+    driver.resize((900, 500))
+    driver.frames(2)
+    assert scene.panel.overflows
+    assert scene.foot.widgets[0].label == texts.LEARN_TO_CHAPTER
+    assert scene.panel.box.bottom <= scene.foot.widgets[0].box.top < driver.app.canvas.view.bottom
