@@ -81,6 +81,9 @@ def test_rows_that_are_not_known_anew_stay_for_half_a_second():
     shown = [recent.fill(Landings(unknown, (2, Landing.UNKNOWN), 1, 0.1)).after[:2] for _ in range(8)]
     assert shown[:7] == [(Landing.LOST, Landing.LANDS)] * 7
     assert shown[7] == (Landing.UNKNOWN, Landing.LANDS)
+    assert recent.fill(first).after[0] is Landing.LOST
+    asked = Landings(unknown, (0, Landing.UNKNOWN), 1, 0.1)
+    assert recent.fill(asked).after[0] is Landing.UNKNOWN, "as the line below says that it was not flown ahead"
 
 
 # The reason of a crash names what was beyond its limit, and the read-outs mark the same.

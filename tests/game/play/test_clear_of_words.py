@@ -194,3 +194,21 @@ def test_the_sentence_of_a_flight_keeps_clear_of_the_panel(shared: Driver, monke
     lines = [box for words, box in drawn if words and words in head.sentence and box.top < 60]
     assert lines
     assert all(not box.colliderect(head.panel) for box in lines)
+
+
+def test_the_pause_after_a_flight_shows_nothing_that_the_network_thinks(open_game: Open, written: list[str]):
+    driver = open_game(PlayScene, 4)
+    driver.key(pygame.K_UP)
+    driver.frames(5)
+    driver.keys(pygame.K_ESCAPE)
+    driver.frames(40)
+    assert texts.LANDINGS_TITLE in written
+    driver.key(pygame.K_ESCAPE)
+    end(driver, TOO_FAST)
+    driver.frames(90)
+    written.clear()
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(20)
+    assert driver.top_name == "FlightPauseScene"
+    assert texts.PAUSE_TITLE in written
+    assert texts.LANDINGS_TITLE not in written
