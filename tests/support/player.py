@@ -46,8 +46,8 @@ class Player(Driver):
         pygame.event.post(event)
 
     def choose(self, label: str) -> None:
-        """Go down to the widget of that name, or up to it, and press it."""
-        for direction in ("down", "up", "right", "left"):
+        """Go to the widget of that name, down and up each column, and press it."""
+        for direction in ("down", "up", "right", "down", "left", "up"):
             for _ in self.form.widgets:
                 if self.form.focused is not None and self.form.focused.label == label:
                     self.press("confirm")
@@ -71,7 +71,7 @@ class Player(Driver):
         found: dict[int, list[str]] = {start: []}
         ahead = [start]
         for index in ahead:
-            for direction in ("down", "up", "right", "left"):
+            for direction in ("down", "up", "right", "down", "left", "up"):
                 if index < len(self.form.widgets):
                     self.form.focus(self.form.widgets[index])
                     self.lead_on(direction)
