@@ -22,7 +22,7 @@ from game.explain.figures import points
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
 # both shipped networks 82 % (modern) and 93 % (classic) of the actions that are not the best lie within it.
 SPAN: Final = 5.0
-NAME: Final = 96.0  # room for names, left of the bars
+NAME: Final = 116.0  # room for names, left of the bars
 ROW: Final = 23.0
 FIRST: Final = 28.0  # the first row, below the first baseline
 _AXIS: Final = FIRST + len(ACTION_NAMES) * ROW + 6.0  # the last baseline, below the first

@@ -177,7 +177,7 @@ def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path:
 def test_watch_flies_a_swarm_and_counts_its_landings(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         window.key("Down", "Return")
-        window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the network to fly")
-        window.key("Down", "Right", "Right", "plus", "plus")
-        window.wait_for(lambda: shows(window, PALETTE.good, pygame.Rect(60, 88, 80, 36)), "landings", 40)
+        window.wait_for(lambda: shows(window, NET, pygame.Rect(60, 16, 24, 24)), "the network to fly")
+        window.key("Down", "Right", "Down", "Right")  # many, and faster
+        window.wait_for(lambda: shows(window, PALETTE.good, pygame.Rect(60, 44, 80, 36)), "landings", 60)
         assert window.close() == 0
