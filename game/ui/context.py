@@ -64,6 +64,11 @@ class Context:
     pilot: OwnPilot | None = None
     reading: Callable[[], Canvas] = _page
 
+    def unfold(self, part: str) -> None:
+        """Open a part of a screen for this player from now on, or close it."""
+        self.settings.unfold(part)
+        self.apply_settings()
+
     def toggle_full_screen(self) -> None:
         """Switch between the full screen and a window."""
         self.settings.full_screen = not self.settings.full_screen

@@ -206,8 +206,7 @@ class ChapterScene(PanelScene):
             general.button(texts.MORE[opened], self._open_more, size=SMALL + 1)
 
     def _open_more(self) -> None:
-        self.context.settings.unfold(_MORE)
-        self.context.apply_settings()
+        self.context.unfold(_MORE)
         self.build()
 
     def _ways(self) -> list[tuple[str, OnPress]]:

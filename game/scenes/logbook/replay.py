@@ -223,8 +223,7 @@ class ReplayScene(WorldScene):
             self._scenery.cut()
 
     def _open_more(self) -> None:
-        self.context.settings.unfold(_OPEN)
-        self.context.apply_settings()
+        self.context.unfold(_OPEN)
 
     def _take_over(self) -> Transition | None:
         if self.flight_replay.flight.over:

@@ -180,8 +180,7 @@ class PhysicsScene(PanelScene):
         return self.context.settings.is_open(_MORE)
 
     def _open_more(self) -> None:
-        self.context.settings.unfold(_MORE)
-        self.context.apply_settings()
+        self.context.unfold(_MORE)
         self.build()
 
     def _said(self) -> str:

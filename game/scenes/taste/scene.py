@@ -105,8 +105,7 @@ class TasteScene(PanelScene):
         return self.context.settings.is_open(_MORE)
 
     def _open(self) -> None:
-        self.context.settings.unfold(_MORE)
-        self.context.apply_settings()
+        self.context.unfold(_MORE)
         self.build()
 
     @property

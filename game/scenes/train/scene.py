@@ -105,8 +105,7 @@ class TrainScene(FormScene):
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        self._settings.unfold(name)
-        self.context.apply_settings()
+        self.context.unfold(name)
 
     def switch(self, column: Column, name: str, words: tuple[str, str], help_: str = "") -> None:
         """Add the word that opens a part, or closes it."""

@@ -189,8 +189,7 @@ class WatchScene(WorldScene):
         write_readouts(cursor, {name: shown[name] for name in PILOT})
 
     def _open_more(self) -> None:
-        self.context.settings.unfold(_OPEN)
-        self.context.apply_settings()
+        self.context.unfold(_OPEN)
 
     # What flies
 
