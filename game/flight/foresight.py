@@ -1,16 +1,13 @@
-"""What would come of a moment if the network had the stick: six futures of it, and the last chance of a lost flight."""
+"""What would come of a moment if the network had the stick: six futures of it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import islice
 from typing import Final
 
 from ai.copilot.futures import DECISION_STEPS, Flying, Lookahead, Plan
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.moment import Moment
-from ai.lander.pilots import COAST
 from ai.lander.push import KEYS
 from ai.lander.route import Route
 from engine import DT
@@ -19,7 +16,6 @@ from game.flight.networks import Policy
 HELD: Final = 0.5  # seconds for which each action is held: after less, the six are hardly distinguished
 _DECISIONS: Final = round(HELD / (DECISION_STEPS * DT))
 _EVERY: Final = 2  # decisions between two places of a path
-_APART: Final = 30  # steps between two moments that are kept
 
 
 class SixFutures:
@@ -61,40 +57,3 @@ class SixFutures:
                 self._flying = None
                 self.paths = [way.states[::_EVERY, :2] for way, _ in end.value]
                 self.lands = [landed for _, landed in end.value]
-
-
-class LastChance:
-    """Last moment of a lost flight from which the network, alone at the stick, would still have landed it.
-
-    Call `note` after every step, and once the flight is lost, `look` until that moment is `known`.
-
-    Attributes:
-        seconds: when it was, in seconds of the flight; None if there was none.
-
-    """
-
-    def __init__(self, policy: Policy, route: Route | None = None) -> None:
-        self._lookahead = Lookahead(policy, route)
-        self._moments: list[tuple[float, Moment]] = []
-        self._search = self._find()
-        self.known = False
-        self.seconds: float | None = None
-
-    def note(self, env: LanderEnv) -> None:
-        """Keep the present moment, now and then."""
-        if int(env.steps[0]) % _APART == 0:
-            self._moments.append((float(env.time[0]), Moment.of(env)))
-
-    def look(self, decisions: int) -> None:
-        """Fly some decisions further, from the latest moment back to the first."""
-        for _ in islice(self._search, decisions):
-            pass
-
-    def _find(self) -> Iterator[None]:
-        while self._moments and self.seconds is None:
-            seconds, moment = self._moments.pop()
-            for future in self._lookahead.look(moment, KEYS[COAST]):
-                if future and future.plan:
-                    self.seconds = seconds
-                yield
-        self.known = True

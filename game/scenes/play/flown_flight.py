@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pygame
 
 from ai.environment import Doubles
-from ai.flights.recording import AS_IT_IS, UNHURRIED
+from ai.flights.recording import UNHURRIED
 from ai.flights.verification import landing_score
-from ai.lander.environment import Cause
 from ai.lander.push import KEYS, Push
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
@@ -21,16 +20,15 @@ from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
-from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
+from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of, yours
 from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
 from game.flight.flight import Flight, StickHolder, begin
 from game.flight.flight_file import Entry, Record
-from game.flight.foresight import LastChance, SixFutures
+from game.flight.foresight import SixFutures
 from game.flight.logbook import Records
-from game.flight.networks import Network
-from game.flight.outcomes import OutcomeCard, cause_of, outcome_card
-from game.input.bindings import Held
+from game.flight.networks import Network, sentence
+from game.flight.outcomes import OutcomeCard, outcome_card
 from game.scenes.play.challenge import Challenge, Wanted
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.ending import FlightEnding, FlownPath
@@ -55,7 +53,6 @@ _BELOW_HEAD: Final = 44.0  # and between the words and the craft
 _LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _CATCHES_UP: Final = 6  # steps of the network's own flight in a frame, once the player's is over
 _LONGEST: Final = 3600  # steps after which its flight counts as one that does not land
-_SEARCH: Final = 6  # decisions in a frame, in the search for what would have saved a lost flight
 _THINKS: Final = 2  # decisions of six futures that are flown in a frame
 
 
@@ -96,7 +93,6 @@ class FlownFlight:
         clear: the part of the screen in which to show the flight.
         futures: the six futures, once somebody has asked; None before.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
-        goal: what there is to fly for, in a sentence; empty for nothing of its own.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
         age: steps of 1/60 s since it was first shown, whether or not it flies.
@@ -113,11 +109,9 @@ class FlownFlight:
         self.begun = False
         self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
         self.record: Record | None = None
-        self.goal = ""
         rules = challenge.rules
         self._policy = None if rules.alone else network.policy
-        easing = eased(self._settings) if rules.eases else AS_IT_IS
-        start = challenge.start(Wanted(seed, self._policy, spawn, easing))
+        start = challenge.start(Wanted(seed, self._policy, spawn, eased(self._settings)))
         self.flight = begin(start.recording, self._policy, shares=start.shares)
         if start.place:
             start.place(self.flight)
@@ -126,7 +120,6 @@ class FlownFlight:
         self.help_words, self.interventions = HelpWords(self.helped), Interventions()
         self.copilot_panel = CopilotPanel()
         self._help()
-        self._last_chance: LastChance | None = None
         self.futures: SixFutures | None = None
         calm = self._settings.reduced_motion
         self.clear, self._earth = ClearArea(), EARTH
@@ -136,8 +129,8 @@ class FlownFlight:
         self.path = FlownPath(self.flight)
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)
-        self._shadow = Flight(self.flight.recording, Alone(self._policy)) if rules.shadows and self._policy else None
-        self.path_preview = PathPreview(self.flight, self._policy if rules.guides else None)
+        self._shadow = Flight(self.flight.recording, Alone(self._policy)) if rules.free and self._policy else None
+        self.path_preview = PathPreview(self.flight, self._policy if rules.free else None)
 
     @property
     def helps(self) -> bool:
@@ -161,7 +154,7 @@ class FlownFlight:
         if not self.credit.alone:
             self._policy = network.policy
             self.flight.chooser.change_network(network.policy)
-            self.path_preview.ask(self._policy if self.challenge.rules.guides else None)
+            self.path_preview.ask(self._policy if self.challenge.rules.free else None)
 
     # Time
 
@@ -200,13 +193,11 @@ class FlownFlight:
         self.path_preview.follow(waiting=False)
         if not was_over:
             self._follow_flight()
-        if flight.wrecked and self._last_chance:
-            self._last_chance.look(_SEARCH)
         if sound := self.challenge.stepped(self):
             self.context.sound.play(sound)
         ended = flight.over and not was_over
         if ended:
-            self._end()
+            self.challenge.ended(self)
         if flight.over:
             self.ending.follow()
             self._finish_card()
@@ -217,13 +208,10 @@ class FlownFlight:
     def _waits(self, asked: Push) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         self._held_before &= asked != Push()
-        touched, guard = asked != Push() or not self.challenge.rules.waits, self.flight.chooser.guard
+        guard = self.flight.chooser.guard
         ready = guard is None or guard.ready(self.flight)  # or nobody would keep it from harm at first
-        goes = (
-            touched and ready and not (self._held_before or (self.challenge.rules.holds and self.helped.help == "off"))
-        )
-        if goes or self.flight.chooser.hand is StickHolder.NETWORK:
-            self.waiting = False
+        goes = asked != Push() and ready and not self._held_before
+        self.waiting &= not (goes or self.flight.chooser.hand is StickHolder.NETWORK)
         return self.waiting
 
     def hang(self) -> None:
@@ -248,9 +236,6 @@ class FlownFlight:
         self.path.follow()
         self.copilot_panel.follow(flight, self.futures if asks else None)
         self.credit.follow()
-        if self.credit.helped and self._policy:  # to tell what would have saved it if it is lost
-            self._last_chance = self._last_chance or LastChance(self._policy, flight.route)
-            self._last_chance.note(flight.env)
         if flight.over:
             self._readouts = at_touch(self._readouts, flight.env)
 
@@ -276,39 +261,29 @@ class FlownFlight:
         self.copilot_panel.forget()
         self.copilot_panel.follow(self.flight, self.futures)
 
-    def _end(self) -> None:
-        self.ending.whole = self.scenery.shot_of(self.path.places)
-        self.challenge.ended(self)
-
     def make_card(self) -> OutcomeCard:
         """Return the card, to which all that follow the flight have added what they know."""
-        flight, credit, whole = self.flight, self.credit, self.ending.whole
-        card = outcome_card(flight.env, flight.share)
-        card.who, card.place = credit.who, self.path.clear_place(whole.view(1.0)) if whole else 0.5
+        flight, credit = self.flight, self.credit
+        card = outcome_card(flight.env)
         credit.add_to(card)
-        if card.advice and cause_of(flight.env) is Cause.TILTED:
-            card.advice = f"{card.advice} {texts.ADVICE_FINE.format(key=self.context.controls.word(Held.FINE))}"
-        if credit.helped:
-            card.stepped_in, card.watched = len(self.interventions.moments), self.interventions.watched(flight)
+        if credit.helped and not card.good:  # why it was not saved says more
+            card.advice = why_not_saved(flight) or card.advice
         if add := self.challenge.words(self).card:
             add(card)
+        if flight.share < 1:
+            figures = [f"{100 - yours(flight.share)} %", self.interventions.counted]
+            card.compared[sentence(texts.NETWORK_FLEW, credit.who)] = texts.DIAL_JOIN.join(filter(None, figures))
         return card
 
     def _finish_card(self) -> None:
-        """Add what takes longer than a frame to be known: how the network fares from there, and what would have saved.
-
-        Until it is known, the card leaves it open.
-        """
+        """Add how a ghost, or the network unseen, fares from there; until it is known, the card leaves it open."""
         card = self.ending.card
         if self._shadow and card:
             score = landing_score(self._shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
             card.compared[texts.CARD_NETWORK.format(who=self.credit.who)] = words if self._shadow_ended else "…"
-        if card and self.credit.helped and not card.good and not card.bare:
-            chance = self._last_chance
-            if chance is None or chance.known:
-                card.bare = why_not_saved(self.flight, chance)
-                card.advice = "" if card.bare else card.advice  # why it was not saved says more
+        if self.ghost and card:
+            card.compared[self.ghost.name] = self.ghost.result(self.flight.env)
 
     def _follow_shadow(self, shadow: Flight[Alone]) -> None:
         """Fly the network's own flight from the same start, unseen; after the player's, some steps in a frame."""
@@ -385,7 +360,7 @@ class FlownFlight:
         if self.ghost:
             self.ghost.draw_way(world, view)
         if flight.over:
-            self.path.draw(world, view, self.interventions.moments, self.ending.retraced)
+            self.path.draw(world, view, self.interventions.moments)
         thinks = self.thinks or (whole and self.copilot_panel.shown and not flight.over)
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
