@@ -32,7 +32,7 @@ class Fake:
         return self.does != "loading"
 
     def ask(self, observation, seconds):
-        if self.does == "late":
+        if self.does in ("late", "loading"):
             return None
         if self.does in ("raises", "dies"):
             self.gone = self.does == "dies"
