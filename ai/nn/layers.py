@@ -1,6 +1,7 @@
 """Layers on vectors: fully connected, dueling, activation, normalisation, dropout."""
 
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
