@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -130,37 +130,12 @@ class Futures:
     @property
     def landed(self) -> Bools:
         """Whether the network lands after one decision of an action, (n, 6)."""
-        return np.array([[plan is not None for plan in row] for row in self.plans])
+        return np.array([[key in known and known[key].plan is not None for key in KEYS] for known in self.known])
 
     @property
     def lasts(self) -> Bools:
         """Whether it lands after as many decisions of it as the dial asks for, too, (n, 6)."""
         return np.array([[key in known and known[key].passes for key in KEYS] for known in self.known])
-
-    @property
-    def plans(self) -> list[list[Plan | None]]:
-        """The plan of each landing, None for the others, n lists of 6."""
-        return [[known[key].plan if key in known else None for key in KEYS] for known in self.known]
-
-
-class FlownAhead(Protocol):
-    """Protocol of what flies the futures of one lander's next decision, while the present one is flown."""
-
-    problem: str  # why there are none; empty while there are
-
-    def ask(
-        self, moment: Moment, before: Opening, asked: Push, decisions: int, pilot: Pilot, route: Route | None
-    ) -> None:
-        """Ask for the futures of a moment, after what is pushed `before`, and forget older ones.
-
-        `asked` is what the stick asks for now, and `decisions`, `pilot` and `route` are those of `Lookahead`.
-        """
-
-    def hint(self, asked: Push) -> None:
-        """Say what the stick asks for now; call it in every step between two requests, so that answers are fetched."""
-
-    def known(self) -> Known:
-        """Return what is known by now of the moment asked for; never waits."""
 
 
 Flying = Generator[None, None, T]  # yields after each decision, and returns what comes of it
