@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from ai.agent.config import AgentConfig
-from ai.environment import Floats
 from ai.files import (
     NETWORK,
+    OF_A_RUN,
     FolderKind,
     atomic_folder,
     check_header,
@@ -27,7 +27,7 @@ from ai.files import (
     read_json,
     recover_folder,
 )
-from ai.nn import ModelFormatError, NeuralNetwork, Optimizer
+from ai.nn import ModelFormatError, NeuralNetwork
 from ai.nn.layer import WIDEST
 from ai.nn.storage import noted
 
@@ -42,8 +42,7 @@ AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
 _ALONE: Final = FolderKind(FORMAT, (AGENT_FILE, OPTIMIZER_FILE, *NETWORK.within("online"), *NETWORK.within("target")))
-_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
-KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *_OF_A_RUN, *_ALONE.within(LAST)))
+KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *OF_A_RUN, *_ALONE.within(LAST)))
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
@@ -89,8 +88,9 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
         with noted(problems, name):
             setattr(agent, name, _read_network(inside(folder, name), getattr(agent, name)))
     with noted(problems, OPTIMIZER_FILE):
-        state = _read_state(inside(folder, OPTIMIZER_FILE), agent.optimizer, agent.online.values)
-        agent.optimizer.load_state(state, agent.online.values)
+        optimizer, values = agent.optimizer, agent.online.values
+        most = (1 + len(optimizer.remembers)) * values.nbytes + _SLACK
+        optimizer.load_state(read_arrays(inside(folder, OPTIMIZER_FILE), most), values)
     if problems:
         raise ModelFormatError(folder, problems)
     agent.folder = folder
@@ -130,14 +130,3 @@ def _read_network(folder: Path, like: NeuralNetwork) -> NeuralNetwork:
 def _sizes(network: NeuralNetwork) -> list[Any]:
     """Return the dtype, layer types and shapes, which two networks must share to take each other's parameters."""
     return [network.dtype, *((type(layer), dict(layer.shapes)) for layer in network.layers)]
-
-
-def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, Any]:
-    """Read the arrays of an optimizer of the parameters `values`; raises OSError, or ValueError for any others."""
-    shapes = {"steps": (), **dict.fromkeys(optimizer.remembers, values.shape)}
-
-    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-        if shape != shapes.get(name) or dtype.kind not in "iuf" or dtype.itemsize > 8:
-            raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
-
-    return read_arrays(path, len(shapes) * values.size * 8 + _SLACK, expect)
