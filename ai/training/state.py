@@ -54,4 +54,4 @@ def going_on(folder: str | Path) -> Iterator[None]:
         raise
     except (OSError, KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
         said = f"{STATE_FILE}: {brief(problem_in(error), 100)}; without this file, the run goes on with an empty memory"
-        raise ModelFormatError(folder, [said]) from error
+        raise ModelFormatError(folder, said) from error
