@@ -34,7 +34,7 @@ class DigitInsideScene(PanelScene):
         super().__init__(context)
         image = np.asarray(image, np.float32)
         self.why_not = WhyNotTab(context, classifier, image, self.build)
-        self.sums = SumsTab(context, classifier, image, self.build)
+        self.sums = SumsTab(classifier, image, self.build)
         self.dreams = DreamsTab(context, classifier, self.build)
         self.tab: WhyNotTab | SumsTab | DreamsTab = self.why_not
         self.build()
@@ -43,7 +43,8 @@ class DigitInsideScene(PanelScene):
         return [self.form.goes_back(texts.HINT_BACK), *self.tab.actions()]
 
     def update(self) -> Transition | None:
-        self.tab.update()
+        if not isinstance(self.tab, SumsTab):  # they stand still
+            self.tab.update()
         return super().update()
 
     def describe(self, panel: Panel) -> None:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.digits.mnist import MnistError, bright
-from ai.explain.excited import MostExciting
 from ai.explain.unit_sums import Place
 from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
 from game.digits.cells import CellPicker
-from game.digits.kept import mnist_test
 from game.digits.pictures import GREY, Numbers, framed
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
@@ -29,12 +25,10 @@ if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
     from ai.digits.preprocessing import Image
     from game.ui.actions import Table
-    from game.ui.context import Context
     from game.ui.panel import Column, Panel
 
 _LEAST: Final = 280.0
 _READ, _GIVEN, _TILES, _SEEN = 230.0, 170.0, 76.0, 100.0  # heights of pictures
-_SEARCHED: Final = 400  # digits of other people
 _MOST_WEIGHTS: Final = 400_000  # of a stage whose weights are shown as pictures
 
 
@@ -46,14 +40,10 @@ class SumsTab:
 
     """
 
-    def __init__(self, context: Context, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
-        self._network, self._image, self._build = classifier.network, image, build
+    def __init__(self, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
+        self._image, self._build = image, build
         self.walk = UnitWalk(classifier, image)
-        self._seen, self._exciting = PaintCache(), PaintCache()
-        self._digits = np.empty((0, 28, 28), np.float32)  # of other people, in which is searched what excites a filter
-        with suppress(MnistError):  # without them the picture is left out
-            self._digits = bright(mnist_test(context.assets_dir)[0][:_SEARCHED])
-        self._searches: dict[int, MostExciting] = {}
+        self._seen = PaintCache()
         self._following: list[Callable[[], None]] = []  # shows the unit that is looked at in one picture
 
     def actions(self) -> Table:
@@ -61,16 +51,6 @@ class SumsTab:
             Action(Command.NEXT, lambda: self.choose(self.walk.number + 1), texts.PATCH_ON),
             Action(Command.PREVIOUS, lambda: self.choose(self.walk.number - 1), texts.PATCH_BACK),
         ]
-
-    def update(self) -> None:
-        """Search on for what excites the filters that are shown, a part per frame."""
-        walk = self.walk
-        if walk.stage.kind == "convolution" and not walk.at_answer and len(self._digits):
-            if walk.number not in self._searches:
-                before = walk.stages[: walk.number + 1]
-                self._searches[walk.number] = MostExciting(self._network, before, self._digits)
-            if not self._searches[walk.number].done:
-                self._searches[walk.number].go_on()
 
     # What is looked at
 
@@ -181,9 +161,6 @@ class SumsTab:
         else:
             words = names["maps" if spatial else "scores" if walk.number == len(walk.stages) - 1 else "units"]
             self._tiles(column, lambda _: maps, words, self._turn_to, _TILES if spatial else _GIVEN)
-        if stage.kind == "convolution" and len(self._digits):
-            column.caption(names["excites"])
-            column.picture(_SEEN, self._draw_exciting)
 
     def _tiles(
         self,
@@ -234,13 +211,6 @@ class SumsTab:
             pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
             corner = (box.left + beside * pixel, box.top + above * pixel)
             canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
-
-    def _draw_exciting(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the ink that excites the filter most, of what was searched so far."""
-        search, channel, side = self._searches.get(self.walk.number), self.walk.place[2], min(box.size)
-        if search and channel in search.patches:
-            patch = search.patches[channel]
-            self._exciting.draw(canvas, (*box.topleft, side, side), patch.tobytes(), framed(patch))
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -94,19 +94,6 @@ def test_each_map_that_is_followed_is_the_one_in_which_the_last_number_stands(in
         assert walk.stage.inputs[row, column, channel] == walk.value(number - 1)
 
 
-def test_a_filter_is_shown_with_the_ink_that_excites_it_most(inside: Driver, modern):
-    driver, number = inside, 0
-    assert texts.PATCH_PICTURES["excites"]
-    driver.frames(110)
-    search = scene(driver)._searches[number]
-    assert search.done
-    kernel = modern.network.layers[0]
-    channel = scene(driver).walk.place[2]
-    patch = search.patches[channel]
-    given = float((patch * kernel.kernels[:, :, 0, channel].T).sum() + kernel.bias[channel])
-    assert given == pytest.approx(search.most[channel], abs=1e-4)
-
-
 def test_three_tabs_do_not_pile_up(inside: Driver):
     tabs = inside.choice(texts.SUMS_TITLE)
     for index, tab in ((0, "why_not"), (2, "dreams"), (1, "sums"), (0, "why_not")):
