@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pygame
@@ -46,6 +46,7 @@ class Context:
         note: shows a short message near the top of the window for a few seconds.
         ahead: returns what flies a guardian's futures ahead; None where nothing does.
         apply_settings: applies the settings to the window and the sound, and saves them.
+        film: the `game.export.film.Export` of a flight that goes on; None while there is none.
         pilot: the player's own file that flies, once it was chosen by name in this game.
         reading: returns the window's canvas for text that flows, whose size and scale layouts go by.
 
@@ -61,6 +62,7 @@ class Context:
     note: Callable[[str], None] = _ignore
     ahead: Callable[[], FlownAhead | None] = lambda: None
     apply_settings: Callable[[], None] = lambda: None
+    film: Any = None
     pilot: OwnPilot | None = None
     reading: Callable[[], Canvas] = _page
 

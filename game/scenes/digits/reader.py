@@ -103,7 +103,7 @@ class LiveReading:
             try:
                 self.classifiers[name] = classifier_in(folder)
             except ModelFormatError as error:
-                self.problems.setdefault(name, brief(error.problems[0] if error.problems else error))
+                self.problems.setdefault(name, brief(error.problem))
             except Exception as error:  # a damaged folder may fail in any way, and none may end the game
                 _log.exception("reading %s", folder)
                 self.problems.setdefault(name, brief(str(error) or type(error).__name__))
