@@ -233,7 +233,7 @@ class LanderView(View):
         self.swarms.update(self.context.settings.reduced_motion)
         self.laboratory.update(self.scene.landed)
         lesson = self.lessons.answer()
-        return push("lesson", lesson, self.lessons, run.swarm_state) if lesson else None
+        return push("lesson", lesson, self.lessons) if lesson else None
 
     def back(self) -> bool:
         if self.laboratory.page:
