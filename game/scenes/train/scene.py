@@ -270,7 +270,6 @@ class TrainScene(FormScene):
         outcome = self.view.update()
         self._frame += 1
         self._look()
-        self.charts.update(at_once=self._settings.reduced_motion)
         self.explained.update()
         outcome = self.form.update() or outcome
         if self._rows_key != self._laid and not any(widget.held or widget.typing for widget in self.form.widgets):
