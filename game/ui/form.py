@@ -209,7 +209,6 @@ class Form:
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: hovering, easing, and the repeat of a held direction."""
-        self.manager.update(1 / 60)
         self._repeat()
         self._show_focus()
         for widget in self.widgets:
