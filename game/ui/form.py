@@ -109,22 +109,6 @@ class Form:
         self.widgets.append(widget)
         return widget
 
-    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Replace some adjacent widgets by others; the focus stays where it was, or near it."""
-        focused = self.focused
-        place = self.widgets.index(old[0]) if old else len(self.widgets)
-        for widget in old:
-            self.widgets.remove(widget)
-            if widget not in new:
-                widget.kill()  # type: ignore[no-untyped-call]
-        self.widgets[place:place] = new
-        for widget in new:
-            widget.join(self.manager)
-        if focused in self.widgets:
-            self.focus(focused)
-        else:
-            self._index = max(0, min(self._index, place + max(0, len(new) - 1), len(self.widgets) - 1))
-
     def focus(self, widget: Widget) -> None:
         self._index = self.widgets.index(widget)
 
@@ -148,7 +132,7 @@ class Form:
         self.manager.mouse_position = before.manager.mouse_position
         for widget in self.widgets:
             if same := before.find(widget.key):
-                widget.warmth = same.warmth
+                widget.follow(same)
         if before.focused and self.widgets:
             place = min(before.widgets.index(before.focused), len(self.widgets) - 1)
             self.focus(self.find(before.focused.key) or otherwise or self.widgets[place])

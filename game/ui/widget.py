@@ -146,6 +146,10 @@ class Widget(UIElement):
         target = float(self.focused)
         self.warmth = target if at_once else self.warmth + (target - self.warmth) * EASE
 
+    def follow(self, before: Widget) -> None:
+        """Take the place of the widget that had its key."""
+        self.warmth = before.warmth
+
     def paint(self, canvas: Canvas) -> None:
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
