@@ -244,7 +244,7 @@ class History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
         history, file = cls(columns), HISTORY_FILE
         if (Path(folder) / _FORMERLY).exists():
-            raise ModelFormatError(folder, [f"{_FORMERLY} was saved by another version, and is left as it is"])
+            raise ModelFormatError(folder, f"{_FORMERLY} was saved by another version, and is left as it is")
         try:
             described = read_json(inside(folder, file))
             if not isinstance(described, dict) or described.get("version") != _VERSION:
@@ -257,9 +257,9 @@ class History:
         except FileNotFoundError as error:
             if file == HISTORY_FILE:
                 return cls(columns)
-            raise ModelFormatError(folder, [f"{file} is missing"]) from error
+            raise ModelFormatError(folder, f"{file} is missing") from error
         except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as error:
-            raise ModelFormatError(folder, [f"{file}: {problem_in(error)}"]) from error
+            raise ModelFormatError(folder, f"{file}: {problem_in(error)}") from error
         return history
 
     def _restore(self, described: _HistoryFile) -> None:

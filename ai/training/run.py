@@ -41,7 +41,7 @@ def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
         with going_on(folder):
             run.load_state(state)
     elif kind.needs_state:
-        raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
+        raise ModelFormatError(folder, "there is nothing to go on with: the run is finished, or its state is gone")
     else:
         run.lost = "its state is not there, so it goes on with an empty memory"
     return run

@@ -72,7 +72,7 @@ def going_on(folder: str | Path) -> Iterator[None]:
     except (OSError, KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
         file = f"{Path(error.filename).name}: " if isinstance(error, OSError) and error.filename else ""
         said = f"{file}{brief(problem_in(error), 100)}; without this folder, the run goes on with an empty memory"
-        raise ModelFormatError(state_folder(folder), [said]) from error
+        raise ModelFormatError(state_folder(folder), said) from error
 
 
 def _path(folder: str | Path, moment: int) -> Path:

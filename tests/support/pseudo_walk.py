@@ -138,7 +138,8 @@ def frame(number: int) -> Happens:
 
 def contacts(driver: Driver) -> None:
     """Show an exhibit's contacts."""
-    driver.key(pygame.K_c)
+    driver.press_on(texts.MORE[0])
+    driver.press_on(texts.PHYSICS_CONTACTS)
     driver.skip(130)
 
 

@@ -99,7 +99,7 @@ class Reader:
         try:
             self.classifiers[name] = classifier_in(folder)
         except ModelFormatError as error:
-            return brief(error.problems[0] if error.problems else error)
+            return brief(error.problem)
         except Exception as error:  # a damaged folder may fail in any way, and none may end the game
             _log.exception("reading %s", folder)
             return brief(str(error) or type(error).__name__)

@@ -43,7 +43,6 @@ from ai.files import (
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
-    ConvolutionLayer,
     CostFunctions,
     ModelFormatError,
     NeuralNetwork,
@@ -129,7 +128,7 @@ def test_what_is_no_ordinary_file_of_the_folder_is_named(saved, run, subtests):
         with subtests.test(name=name, damage=damage):
             with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
                 resume(Training, run)
-            assert any(path.name in problem or "last" in problem for problem in caught.value.problems)
+            assert path.name in caught.value.problem or "last" in caught.value.problem
         path.rmdir() if damage == "folder" else path.unlink()
         shutil.copy(saved / path.relative_to(run), path)
 
@@ -214,11 +213,9 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
     NeuralNetwork(*CostFunctions.use_mse()).save(tmp_path / "model")
     for layers, said in (
         ([{"type": "ActivationLayer", "activation": {"name": "tanh"}}] * 60_000, "at most 500 layers"),
-        ([fully(3400, 3400)] * 2, "at most 12,000,000 parameters"),
-        ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
-        ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
-        ([convolution([34, 34, 256], 256), convolution([32, 32, 256], 256)], "multiplications"),
-        ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
+        ([fully(4000, 4000)], "12,000,000 parameters"),
+        ([fully(1_000_000, 64)], "whole number from 1 to 262144"),
+        ([convolution([28, 28, 1], 1 << 18)], "height · width · channels"),
     ):
         edit(tmp_path / "model" / "config.json", layers=layers)
         with subtests.test(said=said):
@@ -230,7 +227,7 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
 def test_what_a_run_says_of_itself_is_checked_before_there_is_room_for_it(run, subtests):
     config = json.loads((run / "config.json").read_text())["config"]
     best = json.loads((run / "training.json").read_text())["best"]
-    asked = [{"hidden": [1024] * 400}, {"hidden": [1] * 60_000}, {"env": None}, {"env": "x" * 100_000 + ":y"},
+    asked = [{"hidden": [1024] * 400}, {"hidden": [1] * 6_000}, {"env": None}, {"env": "x" * 100_000 + ":y"},
              {"preset" * 20_000: 1}]  # fmt: skip
     counts = [{"features": 1_000_000}, {"actions": True}, {"decisions": 10**400}]
     for name, changes, said in (
@@ -299,8 +296,6 @@ def test_a_network_too_large_to_be_read_is_not_made_either():
         network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
     with little_memory(), pytest.raises(ValueError, match="parameters"):
         DeepQAgent(config=PRESETS["modern"].changed(hidden=(1024,) * 400))
-    with pytest.raises(ValueError, match="values of an example"):
-        NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((28, 28, 1), 1 << 12, 1))
 
 
 # No code from files
