@@ -175,6 +175,10 @@ class Column:
 class Panel(Column):
     """Column that knows its room on the screen, and scrolls.
 
+    Args:
+        form: gets its widgets.
+        before: the panel in whose place it comes; what was seen of that stays in sight.
+
     Attributes:
         box: its room, in points.
         height: of all rows, in points.
@@ -182,11 +186,13 @@ class Panel(Column):
 
     """
 
-    def __init__(self, form: Form) -> None:
+    def __init__(self, form: Form, before: Panel | None = None) -> None:
         super().__init__(form, [])
         self.box = pygame.FRect(0, 0, 0, 0)
         self.height = self.scrolled = 0.0
-        self._shown: Widget | None = None  # the widget that was in focus when it was last laid out
+        self._shown = ""  # key of the widget that was in focus when it was last laid out
+        if before:
+            self.box, self.scrolled, self._shown = before.box, before.scrolled, before._shown
 
     @property
     def overflows(self) -> bool:
@@ -197,8 +203,9 @@ class Panel(Column):
         same, self.box = box == self.box, box
         self._measure(scale)
         focused = self._form.focused if self._form.focused in self.widgets else None
-        if focused is not self._shown or not same:
-            self._shown = focused
+        shown = focused.key if focused else ""
+        if shown != self._shown or not same:
+            self._shown = shown
             if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
                 self._reveal(pygame.FRect(focused.box), focused)
                 self._measure(scale)

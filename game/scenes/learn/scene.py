@@ -203,11 +203,7 @@ class ChapterScene(PanelScene):
         opened = self.context.settings.is_open(_MORE)
         general.text(whole if opened else few, size=_BODY, colour=MUTE)
         if few != whole:
-            general.button(texts.MORE[opened], self._open_more, size=SMALL + 1)
-
-    def _open_more(self) -> None:
-        self.context.unfold(_MORE)
-        self.build()
+            general.button(*self.unfolding(_MORE), size=SMALL + 1)
 
     def _ways(self) -> list[tuple[str, OnPress]]:
         """Return the ways on."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Hashable
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -209,21 +208,15 @@ class ReplayScene(WorldScene):
         rows: list[ButtonRow | ChoiceRow] = [ButtonRow(label, press, size=SMALL) for label, press in words]
         self._export_word = rows[-1]
         rows += [self.playback.choice()] if more else []
-        rows.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
+        rows.append(ButtonRow(*self.unfolding(_OPEN), size=SMALL))
         rows[-1].key = "more"
         foot.flow(rows)
-
-    def state(self) -> Hashable:
-        return self.context.settings.is_open(_OPEN)
 
     def lay_out(self) -> None:
         super().lay_out()
         if (clear := ClearArea.of(self.context.reading(), self.free)) != self._scenery.clear:
             self._scenery.clear = clear
             self._scenery.cut()
-
-    def _open_more(self) -> None:
-        self.context.unfold(_OPEN)
 
     def _take_over(self) -> Transition | None:
         if self.flight_replay.flight.over:
