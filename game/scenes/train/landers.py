@@ -12,6 +12,7 @@ import numpy as np
 import pygame
 
 from ai.training.config import Config
+from ai.training.curves import caption
 from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
@@ -20,7 +21,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.advice import Advice
-from game.scenes.train.charts import LANDER_CHARTS, Beside, LandingsCaption
+from game.scenes.train.charts import LANDER_CHARTS, Beside
 from game.scenes.train.inside import Inside
 from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout, Status
@@ -57,7 +58,7 @@ class LanderView(View):
     def __init__(self, scene: TrainScene) -> None:
         super().__init__(scene)
         run = self.run
-        self.rewind, self._caption = Rewind(run), LandingsCaption()
+        self.rewind = Rewind(run)
         self.laboratory = Laboratory(run, scene.knobs, self._split, self._leave_split)
         self.swarms = Swarms(run, self.rewind)
         self.inside = Inside(run, partial(scene.opened, INSIDE))
@@ -103,8 +104,8 @@ class LanderView(View):
         return self.swarms.beside(chosen.name if chosen else texts.LAB_HEADING)
 
     def caption(self) -> str:
-        run = self.run
-        return self._caption.read(run.history, run.config, bool(self.advice.hint)) if run.alive else ""
+        name = caption(self.run.history) if self.run.alive else ""
+        return texts.CHART_CAPTIONS[name] if name else ""
 
     @property
     def suggestion(self) -> str:
@@ -239,7 +240,7 @@ class LanderView(View):
         return True
 
     def clear(self) -> None:
-        for part in (self.swarms, self.rewind, self.advice, self._caption, self.inside):
+        for part in (self.swarms, self.rewind, self.advice, self.inside):
             part.clear()
 
     # What can be done
