@@ -33,9 +33,9 @@ class DigitInsideScene(PanelScene):
     def __init__(self, context: Context, classifier: DigitClassifier, image: Image) -> None:
         super().__init__(context)
         image = np.asarray(image, np.float32)
-        self.why_not = WhyNotTab(context, classifier, image, self.build)
+        self.why_not = WhyNotTab(classifier, image, self.build)
         self.sums = SumsTab(classifier, image, self.build)
-        self.dreams = DreamsTab(context, classifier, self.build)
+        self.dreams = DreamsTab(context, classifier)
         self.tab: WhyNotTab | SumsTab | DreamsTab = self.why_not
         self.build()
 
@@ -43,8 +43,7 @@ class DigitInsideScene(PanelScene):
         return [self.form.goes_back(texts.HINT_BACK), *self.tab.actions()]
 
     def update(self) -> Transition | None:
-        if not isinstance(self.tab, SumsTab):  # they stand still
-            self.tab.update()
+        self.tab.update()
         return super().update()
 
     def describe(self, panel: Panel) -> None:
