@@ -13,7 +13,7 @@ from game.scenes.train.charts import ticks_of
 from game.ui import plotting
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
 from game.ui.charts import Charts
-from tests.ai.training.test_hints import HEALTHY
+from tests.support.points import HEALTHY
 
 BOX = (40, 450, 372, 128)
 NAN, INF = float("nan"), float("inf")
