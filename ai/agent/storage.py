@@ -16,6 +16,7 @@ import numpy as np
 from ai.agent.config import AgentConfig
 from ai.files import (
     NETWORK,
+    OF_A_RUN,
     FolderKind,
     atomic_folder,
     check_header,
@@ -41,8 +42,7 @@ AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
 _ALONE: Final = FolderKind(FORMAT, (AGENT_FILE, OPTIMIZER_FILE, *NETWORK.within("online"), *NETWORK.within("target")))
-_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
-KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *_OF_A_RUN, *_ALONE.within(LAST)))
+KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *OF_A_RUN, *_ALONE.within(LAST)))
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.digits.preprocessing import SIDE
-from ai.files import CONFIG, FolderKind, atomic_folder, check_header, inside, read_json, recover_folder
+from ai.files import CONFIG, OF_A_RUN, FolderKind, atomic_folder, check_header, inside, read_json, recover_folder
 from ai.files import NETWORK as NETWORK_KIND
 from ai.nn import NeuralNetwork, softmax
 from ai.nn.storage import reading
@@ -19,8 +19,7 @@ DIGITS_FILE: Final = CONFIG  # of a classifier's folder; its network is in a fol
 NETWORK: Final = "network"
 FORMAT: Final = "tranquility digits"
 VERSION: Final = 1
-_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
-KIND: Final = FolderKind(FORMAT, (CONFIG, *_OF_A_RUN, *NETWORK_KIND.within(NETWORK)))
+KIND: Final = FolderKind(FORMAT, (CONFIG, *OF_A_RUN, *NETWORK_KIND.within(NETWORK)))
 DIGITS: Final = 10
 _BATCH: Final = 250  # images that a large network reads at a time: more only need more memory
 

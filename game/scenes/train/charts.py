@@ -14,9 +14,6 @@ import pygame
 
 from ai.agent.decision import in_points
 from ai.environment import Doubles
-from ai.training.captions import Caption, caption
-from ai.training.config import Config
-from ai.training.curves import RecentCurves
 from ai.training.history import REVERTED, History, SettingChange
 from game.core import texts
 from game.drawing import prose
@@ -32,7 +29,6 @@ from game.ui.plotting import Limits
 LANDINGS: Final = "success"  # the chart of the share that lands
 SCORE: Final = "mean_return"  # the chart of what a flight earns
 FEW_CHARTS: Final = 2
-STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = 10.0  # seconds that the axis spans at least
@@ -98,34 +94,6 @@ DIGIT_CHARTS: Final = {
         words=lambda: (texts.DIGIT_RUN_BATCHES, texts.DIGIT_RUN_BOTH),
     ),
 }
-
-
-class LandingsCaption:
-    """Caption of the chart of landings, read together with its number.
-
-    Attributes:
-        shown: the caption; None without one.
-
-    """
-
-    def __init__(self) -> None:
-        self.clear()
-
-    def clear(self) -> None:
-        """Reset for another run."""
-        self.shown: Caption | None = None
-        self._since = 0.0
-
-    def read(self, history: History, config: Config, hinted: bool) -> str:
-        """Return the caption beside a hint, or without one; empty where no rule is sure."""
-        now, before = float(history["seconds"][-1]) if len(history) else 0.0, self.shown
-        stays = before.name if before and now - self._since < STAY else ""
-        self.shown = found = caption(RecentCurves(history, config), hinted=hinted, shown=stays)
-        if found is None:
-            return ""
-        if before is None or before.name != found.name:
-            self._since = now
-        return texts.CHART_CAPTIONS[found.name].format(**found.values)
 
 
 @dataclass(frozen=True)

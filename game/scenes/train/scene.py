@@ -375,11 +375,6 @@ class TrainScene(FormScene):
             return str(error)
         return ""
 
-    def ask(self, answer: str) -> None:
-        """Lay the panel anew, and put the focus on an answer to what it asks, so that one key gives it."""
-        self.build()
-        self.form.focus(next(each for each in self.form.widgets if each.label == answer))
-
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES`, for later runs too."""
         self.run.set_pace(index)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
 from ai.digits import DigitClassifier
 from ai.nn import (
     ActivationFunctions,
@@ -235,7 +234,7 @@ def test_a_save_that_is_cut_short_leaves_the_old_network_whole(saved, monkeypatc
                     every_layer(seed=1).save(saved)
             np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
             assert [path.name for path in saved.parent.iterdir()] == ["model"]
-    saved.rename(saved.with_name(".model.old"))  # as a stop between the two renames leaves it
+    saved.rename(saved.with_name(".model.00000000.old"))  # as a stop between the two renames leaves it
     np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
     assert [path.name for path in saved.parent.iterdir()] == ["model"]
 
@@ -254,21 +253,11 @@ def test_a_network_that_cannot_come_back_is_not_saved(saved):
 
 def test_somebodys_files_are_never_replaced(tmp_path):
     (tmp_path / "thesis.txt").write_text("three years")
-    with pytest.raises(FileExistsError, match="something else"):
+    with pytest.raises(FileExistsError, match="left as it is"):
         every_layer().save(tmp_path)
-    with pytest.raises(FileExistsError, match="something else"):
+    with pytest.raises(FileExistsError, match="left as it is"):
         every_layer().save(tmp_path / "thesis.txt")
     assert (tmp_path / "thesis.txt").read_text() == "three years"
-
-
-def test_the_folder_that_the_program_works_in_stays_under_it(saved, monkeypatch):
-    classifier = DigitClassifier.load(MODELS_DIR / "digits" / "classic")
-    monkeypatch.chdir(saved)
-    for save in (every_layer().save, DeepQAgent(3, 2).save, classifier.save):
-        with pytest.raises(FileExistsError, match="works in"):
-            save(".")
-    NeuralNetwork.load(".").save("../other")
-    assert (saved / "config.json").samefile("config.json")
 
 
 def test_nothing_is_written_that_json_cannot_say(tmp_path):

@@ -29,7 +29,7 @@ class Fake:
     def ready(self, seconds: float = 0.0) -> bool:
         if self.does == "damaged":
             raise PilotError("SyntaxError", 3)
-        return self.does != "loading"
+        return self.does not in ("loading", "late")
 
     def ask(self, observation, seconds):
         if self.does in ("late", "loading"):

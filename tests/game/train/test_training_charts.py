@@ -20,8 +20,7 @@ from game.training.record import EarlierRun, put_beside, take_away
 from game.training.run import TrainingRun
 from game.training.run_kind import LANDERS
 from game.ui.curves import run_style
-from tests.ai.training.test_hints import HEALTHY
-from tests.support.points import point
+from tests.support.points import HEALTHY, point
 
 NUMBERS = list(COLUMNS[: -len(PARTS)])
 

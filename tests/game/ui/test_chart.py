@@ -15,7 +15,7 @@ from game.ui.chart import Chart
 from game.ui.charts import Charts
 from game.ui.curves import Series, Tick, run_style
 from game.ui.tooltip import draw_tooltip
-from tests.ai.training.test_hints import HEALTHY
+from tests.support.points import HEALTHY
 
 NAN, INF = float("nan"), float("inf")
 
