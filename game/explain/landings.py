@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
-from ai.lander.pilots import COAST
 from game.core import texts
-from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
 from game.explain.q_values import FIRST, NAME, ROW
@@ -73,12 +70,6 @@ class Landings:
         """Whether no action is known to lead to a landing."""
         return not any(after in (Landing.LANDS, Landing.BRIEFLY) for after in (*self.after, self.asked[1]))
 
-    @property
-    def coasting(self) -> tuple[float, bool] | None:
-        """After how many seconds of coasting there must be a landing, and whether there is; None if unknown."""
-        after = self.after[COAST]
-        return None if after is Landing.UNKNOWN else (self.seconds, after is Landing.LANDS)
-
 
 class RecentLandings:
     """What comes of each action as it was last seen: not all six can be flown ahead anew for each decision."""
@@ -115,10 +106,4 @@ def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, w
         said = texts.LANDINGS[after.value]
         lit = NET if after is Landing.LANDS else colour
         canvas.text(said, (left + width, y + 4), size=SMALL, colour=lit, align="right", room=width - NAME - 20)
-        canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_LANDING, partial(landing_words, landings, action))
-
-
-def landing_words(landings: Landings, action: int) -> str:
-    """Say what comes of an action now."""
-    name, after = capital(texts.said(ACTION_NAMES[action])), landings.after[action]
-    return texts.EXPLAIN_LANDING_NOW[after.value].format(name=name, seconds=f"{landings.seconds:.1f}")
+        canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_LANDING)

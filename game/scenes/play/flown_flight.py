@@ -19,7 +19,6 @@ from game.core.clock import TimeScale
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of, yours
 from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
@@ -107,7 +106,7 @@ class FlownFlight:
         self.challenge, self.network, self.helped = challenge, network, helped
         self.waiting = self._held_before = True
         self.begun = False
-        self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
+        self.age = 0
         self.record: Record | None = None
         rules = challenge.rules
         self._policy = None if rules.alone else network.policy
@@ -241,14 +240,10 @@ class FlownFlight:
 
     def think(self, decisions: int) -> None:
         """Fly the six futures of the present moment some decisions further, for whoever asks."""
-        step = self.flight.at
         if self._policy is None or self.flight.over:
             return
         self.futures = self.futures or SixFutures(self._policy, self.flight.route)
-        if not self.futures.under_way and self._looked != step:
-            self.futures.begin(self.flight.env)
-            self._looked = step
-        self.futures.follow(decisions)
+        self.futures.follow(self.flight.env, decisions)
         self.copilot_panel.follow(self.flight, self.futures)
 
     # The end
@@ -365,7 +360,7 @@ class FlownFlight:
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
         else:
-            self.path_preview.draw(world, view, self.scenery.clear.head, self._coasting)
+            self.path_preview.draw(world, view, self.scenery.clear.head)
         if self.ghost:
             self.ghost.draw(world, view, alpha)
         self.scenery.draw_craft(world, alpha, words=self.ending.shown == 0)
@@ -379,13 +374,6 @@ class FlownFlight:
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, flight.share if self.begun else None, self.network.name)
-
-    @property
-    def _coasting(self) -> tuple[float, bool] | None:
-        """A guardian's future of coasting, for the mark on the path; None without one, or if nobody asks."""
-        values = self.copilot_panel.values
-        shown = self._settings.show_thinking and self.copilot_panel.shown
-        return values.coasting if shown and isinstance(values, Landings) else None
 
     def _shown(self, *, whole: bool) -> list[str]:
         """Name the read-outs: the four that a pilot needs, and what is left of time and of a small tank; or all."""

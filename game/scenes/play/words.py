@@ -159,12 +159,13 @@ def is_late(decision: SharedDecision) -> bool:
 
 
 def why_not_saved(flight: Flight[Crew]) -> str:
-    """Say of a helped flight that was lost why it was not saved; empty where that is not known."""
+    """Say of a helped flight that was lost why it was not saved; empty if that is not known."""
     guard = flight.chooser.guard
     if guard and guard.bare:
         since, why = guard.bare
         return texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
-    return texts.NOT_SAVED_BY_VALUES if guard is None or guard.ahead.problem else ""
+    by_values = flight.chooser.copilot and (guard is None or guard.ahead.problem)
+    return texts.NOT_SAVED_BY_VALUES if by_values else ""
 
 
 def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:

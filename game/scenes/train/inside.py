@@ -56,11 +56,6 @@ class Inside:
         """Whether they are seen; the network is followed in any case."""
         return self._is_open()
 
-    @property
-    def busy(self) -> bool:
-        """Whether the next frame paints part of a new picture of the network."""
-        return self.opened and self.view.busy
-
     def place(self, display: pygame.FRect) -> None:
         """Move to another box."""
         self.display = display

@@ -39,12 +39,9 @@ def agent() -> DeepQAgent:
 def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAgent):
     flight = begun(4, agent)
     futures = SixFutures(agent)
-    futures.begin(begun(9, agent).env)  # of another moment, left at once
-    futures.follow(3)
-    futures.begin(flight.env)
     before = flight.env.snapshot()
-    while futures.under_way:
-        futures.follow(10)
+    while not futures.paths:
+        futures.follow(flight.env, 10)
     assert all(lands is not None for lands in futures.lands)
     for action, (path, lands) in enumerate(zip(futures.paths, futures.lands, strict=True)):
         flown = begun(4, agent)
