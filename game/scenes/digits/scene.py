@@ -100,7 +100,7 @@ class DigitsScene(PanelScene):
         return [
             self.form.goes_back(texts.HINT_BACK),
             Action(pygame.K_z, self.pad.undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
-            *(Action(key, self.pad.clear) for key in (Command.CHOICES, Command.RETRY, pygame.K_DELETE)),
+            Action(Command.RETRY, self.pad.clear),
             *digit_actions(self._correct),
         ]
 

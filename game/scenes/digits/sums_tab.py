@@ -21,7 +21,6 @@ from game.scenes.digits.unit_walk import UnitWalk, sentence_of
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
     from ai.digits.preprocessing import Image
-    from game.ui.actions import Table
     from game.ui.panel import Column, Panel
 
 _LEAST: Final = 280.0
@@ -40,12 +39,6 @@ class SumsTab:
         self._image, self._build = image, build
         self.walk = UnitWalk(classifier, image)
         self._seen = PaintCache()
-
-    def actions(self) -> Table:
-        return []
-
-    def update(self) -> None:
-        """Nothing here goes on by itself."""
 
     def choose(self, number: int) -> None:
         """Look at another stage."""

@@ -20,11 +20,9 @@ from game.drawing.tokens import MUTE, NET, SMALL
 from game.scenes.digits.answer import DigitBars, write_legend
 from game.scenes.digits.reader import best_two
 from game.scenes.digits.sums import figure
-from game.ui.actions import digit_actions
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
-    from game.ui.actions import Table
     from game.ui.panel import Panel
 
 _DIGIT, _MAP = 400.0, 240.0  # sides of pictures
@@ -54,9 +52,6 @@ class WhyNotTab:
         self.asked = digit
         self._compare()
         self._build()
-
-    def actions(self) -> Table:
-        return list(digit_actions(self.ask))
 
     def update(self) -> None:
         if self.contrast and not self.contrast.done and self.contrast.advance():
