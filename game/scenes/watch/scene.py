@@ -148,7 +148,7 @@ class WatchScene(WorldScene):
                 ChoiceRow(texts.WATCH_MAP, texts.KNOB_SWITCH, on, self._choose_map, SMALL),
                 ButtonRow(texts.PAUSE_NEW_STARTS, self._begin_anew, size=SMALL),
             ]
-        widgets.append(ButtonRow(texts.MORE[more], lambda: self.context.unfold(_OPEN), size=SMALL))
+        widgets.append(ButtonRow(*self.unfolding(_OPEN), size=SMALL))
         widgets[-1].key = "more"
         choices = [widget for widget in widgets if isinstance(widget, ChoiceRow)]
         for choice, what in zip(choices, texts.EXPLAIN_CHOICES, strict=False):
@@ -158,7 +158,7 @@ class WatchScene(WorldScene):
         self.hand.label = texts.TOUCH_LANDER
 
     def state(self) -> Hashable:
-        return self.world.policy_map.on, self.context.settings.is_open(_OPEN)
+        return super().state(), self.world.policy_map.on
 
     @property
     def sentence(self) -> tuple[str, Colour, Shape]:
