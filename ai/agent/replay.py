@@ -214,5 +214,5 @@ def make_replay(config: AgentConfig, num_features: int) -> ReplayBuffer:
         return ReplayBuffer(*sizes)
     except MemoryError as error:
         raise ValueError(
-            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take more memory than there is"
+            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take too much memory"
         ) from error

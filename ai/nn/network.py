@@ -192,8 +192,10 @@ class NeuralNetwork:
         examples, targets = np.asarray(x, self.dtype), np.asarray(y, self.dtype)
         if len(examples) != len(targets) or not len(examples):
             raise ValueError(f"{len(examples)} inputs need as many targets, at least one; not {len(targets)}")
-        if not (np.isfinite(examples).all() and np.isfinite(targets).all()):
-            raise ValueError("inputs and targets are finite numbers")
+        for name, numbers in (("input", examples), ("target", targets)):
+            if not np.isfinite(numbers).all():
+                row, *place = np.argwhere(~np.isfinite(numbers))[0].tolist()
+                raise ValueError(f"{name} {row} is {numbers[row, *place]} at place {place}, and no finite number")
         optimizer = optimizer or SGD(learning_rate)
         rng = rng or np.random.default_rng(0)
         history = []
