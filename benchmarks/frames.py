@@ -182,8 +182,8 @@ def rows() -> dict[str, Row]:
             )
             for name in ("modern", "classic")
         },
-        "inside, modern": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT, pygame.K_n)),
-        "inside, classic": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT, pygame.K_n), "classic"),
+        "inside, modern": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT)),
+        "inside, classic": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT), "classic"),
         "menu": Row(MenuScene),
         "train": of_tour("TrainScene", (pygame.K_RETURN,)),
         "train, split": Row(_split),

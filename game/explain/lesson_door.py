@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
 
 import numpy as np
 
 from ai.explain.agent_lesson import Lesson
 from game.core import texts
 from game.training.run import TrainingRun
-
-_PATIENCE: Final = 30  # frames without an answer, after which a message says that it is being made
 
 
 class LessonDoor:
@@ -20,20 +17,19 @@ class LessonDoor:
     def __init__(self, run: TrainingRun, note: Callable[[str], object], rng: np.random.Generator) -> None:
         self._run, self._note, self._rng = run, note, rng
         self._shown = run.lesson
-        self._moment: int | None = None  # of the lesson that was asked for last
-        self._asked, self._waited = False, 0  # whether one was asked for, and how many frames ago
+        self._asked = False
 
-    def ask(self, slot: int, moment: int | None = None) -> None:
-        """Ask for the lesson of a lander, at a moment of the run."""
+    def ask(self, slot: int) -> None:
+        """Ask for the lesson of a lander."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return
-        self._shown, self._asked, self._waited, self._moment = self._run.lesson, True, 0, moment
-        self._run.ask("explain", slot, moment)
+        self._shown, self._asked = self._run.lesson, True
+        self._run.ask("explain", slot)
 
     def ask_another(self) -> None:
-        """Ask for the lesson of any lander, at the same moment."""
-        self.ask(int(self._rng.integers(self._run.config.num_envs)), self._moment)
+        """Ask for the lesson of any lander."""
+        self.ask(int(self._rng.integers(self._run.config.num_envs)))
 
     def forget(self) -> None:
         """Wait for a lesson no longer."""
@@ -47,9 +43,6 @@ class LessonDoor:
             self._note(note)
         lesson: Lesson | None = self._run.lesson
         if lesson is None or lesson is self._shown:
-            self._waited += 1
-            if self._waited == _PATIENCE:
-                self._note(texts.LESSON_ASKED)
             return None
         self._asked = False
         return lesson

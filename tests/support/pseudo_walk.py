@@ -170,9 +170,9 @@ def tried(*labels: str, steps: int) -> Happens:
     return try_it
 
 
-def inside(steps: int, driver: Driver) -> None:
-    """Follow a unit some steps on."""
-    driver.keys(*[pygame.K_n] * steps)
+def inside(stage: int, driver: Driver) -> None:
+    """Follow a unit to another stage."""
+    driver.top.sums.choose(stage)
     driver.frames(5)
 
 
@@ -220,7 +220,7 @@ STATES = [
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
     Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),
-    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
+    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 9)),
     Stop("modern inside", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))

@@ -14,9 +14,6 @@ import pygame
 
 from ai.agent.decision import in_points
 from ai.environment import Doubles
-from ai.training.captions import Caption, caption
-from ai.training.config import Config
-from ai.training.curves import RecentCurves
 from ai.training.history import REVERTED, History, SettingChange
 from game.core import texts
 from game.drawing import prose
@@ -24,15 +21,14 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.record import EarlierRun
 from game.training.run_settings import figure, format_changes, label
-from game.ui.chart import Chart, Series, Tick
+from game.ui.chart import Chart
 from game.ui.charts import Charts
-from game.ui.curves import run_style
+from game.ui.curves import Series, Tick, run_style
 from game.ui.plotting import Limits
 
 LANDINGS: Final = "success"  # the chart of the share that lands
 SCORE: Final = "mean_return"  # the chart of what a flight earns
 FEW_CHARTS: Final = 2
-STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = 10.0  # seconds that the axis spans at least
@@ -100,34 +96,6 @@ DIGIT_CHARTS: Final = {
 }
 
 
-class LandingsCaption:
-    """Caption of the chart of landings, read together with its number.
-
-    Attributes:
-        shown: the caption; None without one.
-
-    """
-
-    def __init__(self) -> None:
-        self.clear()
-
-    def clear(self) -> None:
-        """Reset for another run."""
-        self.shown: Caption | None = None
-        self._since = 0.0
-
-    def read(self, history: History, config: Config, hinted: bool) -> str:
-        """Return the caption beside a hint, or without one; empty where no rule is sure."""
-        now, before = float(history["seconds"][-1]) if len(history) else 0.0, self.shown
-        stays = before.name if before and now - self._since < STAY else ""
-        self.shown = found = caption(RecentCurves(history, config), hinted=hinted, shown=stays)
-        if found is None:
-            return ""
-        if before is None or before.name != found.name:
-            self._since = now
-        return texts.CHART_CAPTIONS[found.name].format(**found.values)
-
-
 @dataclass(frozen=True)
 class Beside:
     """What is shown beside a run.
@@ -150,10 +118,15 @@ class TrainingCharts(Charts):
     def __init__(self, kinds: Mapping[str, ChartKind]) -> None:
         self._kinds = kinds
         self._all = [
-            Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
-                  log=kind.log, empty=texts.TRAIN_CHARTS_SHOW[name])
+            Chart(
+                texts.TRAIN_CHARTS[name],
+                limits=kind.limits,
+                read=partial(_written, kind.form),
+                log=kind.log,
+                empty=texts.TRAIN_CHARTS_SHOW[name],
+            )
             for name, kind in kinds.items()
-        ]  # fmt: skip
+        ]
         super().__init__(self._all)
         self._history = History()
         self._due: list[Callable[[], None]] = []
@@ -192,14 +165,12 @@ class TrainingCharts(Charts):
         series = []
         for each in runs:
             colour, dash = run_style(each.style)
-            series.append(Series(*kind.curve(each.run), each.name, colour, dash, kind.smooth))
+            series.append(Series(*kind.curve(each.run), each.name, colour, dash, kind.smooth, kind.log))
         if kind.second and len(runs) == 1 and len(self._history):
             series.append(Series(*kind.second(self._history), kind.words()[0], HUMAN, _DASH))
             said = f"{self._both(kind)}\n{said}".strip()
-        ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
-        ticks = ticks_of(self._history) if chart is self._all[0] else ()
-        chart.set(series, (0.0, max([_SHORTEST, *ends])), ticks, said)
-        chart.renew()
+        end = max([_SHORTEST, *(float(each.run["seconds"][-1]) for each in runs)])
+        chart.set(series, end, ticks_of(self._history) if chart is self._all[0] else (), said)
 
     def _both(self, kind: ChartKind) -> str:
         """Say what both curves of a chart are, by their latest numbers; empty before there are any."""
@@ -225,7 +196,7 @@ class TrainingCharts(Charts):
     @property
     def latest(self) -> tuple[int | None, ...]:
         """Percent that each run of the first chart has come to; None before there is a number."""
-        return tuple(None if (share := run.last()) is None else round(share) for run in self._all[0].runs)
+        return tuple(None if run.last is None else round(run.last) for run in self._all[0].runs)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and what is said of them."""
@@ -239,7 +210,7 @@ class TrainingCharts(Charts):
             for row in rows[0] if alone else itertools.chain(*rows):
                 canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
                 y += _LEADING
-            log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
+            log = texts.EXPLAIN_AXIS_LOG if chart.log else ""
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXIS, log.format)
 

@@ -12,16 +12,16 @@ import numpy as np
 import pygame
 
 from ai.training.config import Config
+from ai.training.curves import caption
 from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Transition, push
-from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, NIGHT0, SMALL
+from game.drawing.tokens import NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.advice import Advice
-from game.scenes.train.charts import LANDER_CHARTS, Beside, LandingsCaption
+from game.scenes.train.charts import LANDER_CHARTS, Beside
 from game.scenes.train.inside import Inside
 from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout, Status
@@ -50,7 +50,6 @@ class LanderView(View):
         laboratory: the experiment that was chosen, and what came of it.
         inside: the network.
         rewind: the moment that is shown.
-        offers: whether there is a first landing to stop at.
 
     """
 
@@ -59,13 +58,12 @@ class LanderView(View):
     def __init__(self, scene: TrainScene) -> None:
         super().__init__(scene)
         run = self.run
-        self.rewind, self._caption = Rewind(run), LandingsCaption()
+        self.rewind = Rewind(run)
         self.laboratory = Laboratory(run, scene.knobs, self._split, self._leave_split)
         self.swarms = Swarms(run, self.rewind)
         self.inside = Inside(run, partial(scene.opened, INSIDE))
         self.lessons = LessonDoor(run, self.context.note, self.context.rng)
         self.advice = Advice(run, scene.knobs.turn)
-        self.offers = False
         self._advised: object = None  # the network on which there was advice last
         scene.take_pace()
 
@@ -106,8 +104,8 @@ class LanderView(View):
         return self.swarms.beside(chosen.name if chosen else texts.LAB_HEADING)
 
     def caption(self) -> str:
-        run = self.run
-        return self._caption.read(run.history, run.config, bool(self.advice.hint)) if run.alive else ""
+        name = caption(self.run.history) if self.run.alive else ""
+        return texts.CHART_CAPTIONS[name] if name else ""
 
     @property
     def suggestion(self) -> str:
@@ -133,7 +131,7 @@ class LanderView(View):
     def key(self) -> Hashable:
         earlier = tuple((each.name, each.style) for each in self.run.earlier)
         opened, now = self.inside.opened and len(self.run.history) > 0, self.moment is None
-        return self.laboratory.key, self.run.twin is None, now, self.advice.key, earlier, opened, self.offers
+        return self.laboratory.key, self.run.twin is None, now, self.advice.key, earlier, opened
 
     def describe_first(self, column: Column) -> None:
         self.rewind.describe(column, timeline=self.inside.opened)
@@ -177,10 +175,6 @@ class LanderView(View):
             column.aside(texts.COMPARE_REMOVE)
 
     def describe_hint(self, column: Column) -> bool:
-        if self.offers and self.run.first_landing:
-            column.text(texts.LESSON_OFFER.format(slot=self.run.first_landing.slot + 1), size=SMALL, colour=HUMAN)
-            column.words([(texts.LESSON_LOOK, self._look), (texts.LESSON_FLY_ON, self._fly_on)])
-            return True
         if self.advice.shown:
             self.advice.describe(column)
         return self.advice.shown
@@ -195,7 +189,7 @@ class LanderView(View):
         return [
             (landers, lambda: self.swarms.box),
             (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
-            (scrubber, lambda: charts.charts[0].box.union(charts.charts[1].box)),
+            (scrubber, lambda: charts.box),
         ]
 
     def _scrub(self, place: float | int) -> None:
@@ -226,7 +220,6 @@ class LanderView(View):
         elif run.network_state is not self._advised and len(run.history):
             self._advised = run.network_state
             self.advice.follow()
-        self._offer()
         self.rewind.update()
         self.inside.show(run.network_state if self.moment is None else self.rewind.network_state, self.rewind.row)
         self.inside.update()
@@ -247,33 +240,16 @@ class LanderView(View):
         return True
 
     def clear(self) -> None:
-        for part in (self.swarms, self.rewind, self.advice, self._caption, self.inside):
+        for part in (self.swarms, self.rewind, self.advice, self.inside):
             part.clear()
 
     # What can be done
 
-    def _offer(self) -> None:
-        """Offer once in a player's life to stop at a first landing, and look at what is learned from it."""
-        run, settings = self.run, self.context.settings
-        if run.first_landing and not settings.lesson_offered and run.state is WorkerState.RUNNING:
-            self.offers = settings.lesson_offered = True
-            self.context.apply_settings()
-            self.scene.ask(texts.LESSON_LOOK)
-        self.offers &= run.alive
-
-    def _look(self) -> None:
-        """Ask for the lesson of the first landing."""
-        assert self.run.first_landing is not None
-        self.offers = False
-        self.lessons.ask(self.run.first_landing.slot, self.run.first_landing.decisions)
-
-    def _fly_on(self) -> None:
-        self.offers = False
-
     def _ask_why(self) -> None:
-        """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
+        """Ask for the lesson of the chosen lander, or of the one that explores least, as the run is now."""
         chosen = self.swarms.shown.chosen
-        self.lessons.ask(CAREFUL if chosen is None else chosen, self.moment)
+        self.rewind.clear()
+        self.lessons.ask(CAREFUL if chosen is None else chosen)
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +12,7 @@ import pygame
 import pytest
 
 from ai.files import read_json
-from ai.training.config import Config, in_force
+from ai.training.config import PRESETS, Config, in_force
 from ai.training.experiments import SABOTAGES, VERDICTS, sabotaged
 from ai.training.history import History
 from ai.training.loop import Training
@@ -26,7 +27,7 @@ from game.training.run import AHEAD, TrainingRun
 from game.ui.rows import RunRow
 from tests.support import inline_worker
 from tests.support.driver import Driver
-from tests.support.recordings import growing, recorded
+from tests.support.points import HEALTHY
 from tests.support.small import LANDERS as SMALL
 from tests.support.written import words_written
 
@@ -204,13 +205,15 @@ def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
     train: Driver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     train.top.view.laboratory.chosen = Chosen("no_replay", "never")
-    laboratory, healthy = train.top.view.laboratory, recorded("modern healthy")
-    run = SimpleNamespace(config=healthy.config, history=History(), twin=None)
-    run.twin = SimpleNamespace(config=healthy.config, history=History(), problem="")
+    laboratory, config = train.top.view.laboratory, PRESETS["modern"]
+    run = SimpleNamespace(config=config, history=History(), twin=None)
+    run.twin = SimpleNamespace(config=config, history=History(), problem="")
     laboratory._run, laboratory._landed = run, (80, 12)
     said: list[tuple[str, str]] = []
-    for whole, other in zip(growing("modern healthy"), growing("modern sabotage no_shaping"), strict=False):
-        run.history, run.twin.history = whole.history, other.history
+    for _ in range(100):
+        landed = 0.97 if len(run.history) > 20 else 0.1
+        run.history.append(replace(HEALTHY, decisions=1000.0 * len(run.history), success_rate=landed))
+        run.twin.history.append(replace(HEALTHY, decisions=1000.0 * len(run.history), success_rate=0.1))
         laboratory.follow()
         if said[-1:] != [now := (laboratory._figures(), laboratory.said["came"])]:
             said.append(now)
@@ -219,7 +222,7 @@ def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
     assert [figures for figures, _ in said[:-1]] == [begins] * (len(said) - 1)
     verdicts = [texts.LAB_AS_GUESSED, texts.LAB_NOT_AS_GUESSED]
     assert [any(each in came for each in verdicts) for _, came in said] == [False] * (len(said) - 1) + [True]
-    run.history = recorded("modern sabotage no_shaping").history
+    run.history = run.twin.history
     laboratory.follow()
     assert (laboratory._figures(), laboratory.said["came"]) == said[-1], "a verdict stays"
 

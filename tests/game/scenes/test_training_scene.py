@@ -19,9 +19,9 @@ from game.scenes.train.scene import CHARTS, MORE, TrainScene
 from game.training.library import DigitModels, Library
 from game.training.record import put_beside
 from game.ui.context import Context
-from tests.ai.training.test_hints import HEALTHY
 from tests.game.tour.checkers import MOST_WORDS
 from tests.support.driver import Driver
+from tests.support.points import HEALTHY
 from tests.support.written import Written
 
 WINDOWS = (((1280, 720), "largest"), ((800, 600), "normal"), ((720, 1280), "normal"))

@@ -14,10 +14,9 @@ from game.core import texts
 from game.scenes.train.advice import Advice
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.panel import Column
+from game.ui.panel import Panel
 from game.ui.widget import Widget
-from tests.ai.training.test_hints import HEALTHY
-from tests.support.points import point_of
+from tests.support.points import HEALTHY, point_of
 
 MODERN = PRESETS["modern"]
 
@@ -42,7 +41,7 @@ def test_every_hint_has_words() -> None:
 def words_of(advice: Advice, context: Context) -> dict[str, Widget]:
     form = Form(context)
     if advice.shown:
-        advice.describe(Column(form))
+        advice.describe(Panel(form))
     return {each.label: each for each in form.widgets}
 
 
@@ -61,7 +60,7 @@ def test_while_something_else_waits_no_hint_asks(context: Context) -> None:
     assert list(words_of(advice, context)) == [texts.HINT_APPLY, texts.HINT_DISMISS]
 
 
-def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, broken: History) -> None:
+def test_a_remedy_is_applied_the_way_back_too(context: Context, broken: History) -> None:
     turned: list[tuple[str, float]] = []
     gone_to: list[int] = []
     growing = History()
@@ -80,13 +79,8 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, broke
         if number == 300:
             growing.append(SettingChange(300_000, "reward_weights.time", -0.4, 5.0, seconds=30.0))
         advice.follow()
-    assert advice.hint == "changed"
+    assert advice.adviser.shown.name == "changed"
     words_of(advice, context)[texts.HINT_APPLY].press()
     assert gone_to == [200_000]
     assert turned == [("reward_weights.time", -0.4)]
-    assert advice.shown, "the way back is offered"
-    assert "200,000" in advice.done, "and what was done is said"
-    words_of(advice, context)[texts.HINT_UNDO].press()
-    assert gone_to == [200_000, 390_000]
-    assert turned[1:] == [("reward_weights.time", 5.0)]
     assert not advice.shown
