@@ -21,9 +21,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.record import EarlierRun
 from game.training.run_settings import figure, format_changes, label
-from game.ui.chart import Chart, Series, Tick
+from game.ui.chart import Chart
 from game.ui.charts import Charts
-from game.ui.curves import run_style
+from game.ui.curves import Series, Tick, run_style
 from game.ui.plotting import Limits
 
 LANDINGS: Final = "success"  # the chart of the share that lands
@@ -118,10 +118,15 @@ class TrainingCharts(Charts):
     def __init__(self, kinds: Mapping[str, ChartKind]) -> None:
         self._kinds = kinds
         self._all = [
-            Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
-                  log=kind.log, empty=texts.TRAIN_CHARTS_SHOW[name])
+            Chart(
+                texts.TRAIN_CHARTS[name],
+                limits=kind.limits,
+                read=partial(_written, kind.form),
+                log=kind.log,
+                empty=texts.TRAIN_CHARTS_SHOW[name],
+            )
             for name, kind in kinds.items()
-        ]  # fmt: skip
+        ]
         super().__init__(self._all)
         self._history = History()
         self._due: list[Callable[[], None]] = []
@@ -160,14 +165,12 @@ class TrainingCharts(Charts):
         series = []
         for each in runs:
             colour, dash = run_style(each.style)
-            series.append(Series(*kind.curve(each.run), each.name, colour, dash, kind.smooth))
+            series.append(Series(*kind.curve(each.run), each.name, colour, dash, kind.smooth, kind.log))
         if kind.second and len(runs) == 1 and len(self._history):
             series.append(Series(*kind.second(self._history), kind.words()[0], HUMAN, _DASH))
             said = f"{self._both(kind)}\n{said}".strip()
-        ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
-        ticks = ticks_of(self._history) if chart is self._all[0] else ()
-        chart.set(series, (0.0, max([_SHORTEST, *ends])), ticks, said)
-        chart.renew()
+        end = max([_SHORTEST, *(float(each.run["seconds"][-1]) for each in runs)])
+        chart.set(series, end, ticks_of(self._history) if chart is self._all[0] else (), said)
 
     def _both(self, kind: ChartKind) -> str:
         """Say what both curves of a chart are, by their latest numbers; empty before there are any."""
@@ -193,7 +196,7 @@ class TrainingCharts(Charts):
     @property
     def latest(self) -> tuple[int | None, ...]:
         """Percent that each run of the first chart has come to; None before there is a number."""
-        return tuple(None if (share := run.last()) is None else round(share) for run in self._all[0].runs)
+        return tuple(None if run.last is None else round(run.last) for run in self._all[0].runs)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and what is said of them."""
@@ -207,7 +210,7 @@ class TrainingCharts(Charts):
             for row in rows[0] if alone else itertools.chain(*rows):
                 canvas.text(row, (box.x, y), size=_SIZE, colour=MUTE)
                 y += _LEADING
-            log = texts.EXPLAIN_AXIS_LOG if self._kinds[name].log else ""
+            log = texts.EXPLAIN_AXIS_LOG if chart.log else ""
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name])
             canvas.explain(chart.gutter, texts.EXPLAIN_AXIS, log.format)
 

@@ -189,7 +189,7 @@ class LanderView(View):
         return [
             (landers, lambda: self.swarms.box),
             (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
-            (scrubber, lambda: charts.charts[0].box.union(charts.charts[1].box)),
+            (scrubber, lambda: charts.box),
         ]
 
     def _scrub(self, place: float | int) -> None:

@@ -25,7 +25,7 @@ from game.training.run import PACES, TrainingRun
 from game.training.run_settings import RunSettings
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form, FormScene
+from game.ui.form import FormScene
 from game.ui.hints import HintRow
 from game.ui.panel import Column, Panel
 
@@ -64,7 +64,6 @@ class TrainScene(FormScene):
 
     """
 
-    panel: Panel
     _foot: Panel
     start_button: ButtonRow
 
@@ -72,8 +71,8 @@ class TrainScene(FormScene):
         super().__init__(context, self._back)
         self.run = run = TrainingRun(view.kind, view.collection(context.user_dir))
         self._settings, self._was_running, self._frame, self._alive = context.settings, False, 0, False
-        self._laid: Hashable = None
         self._page: Hashable = False
+        self.panel = Panel(self.form)
         self._seen: Hashable = None
         self._layout: Layout | None = None
         self.landed: tuple[int | None, ...] = ()
@@ -88,7 +87,7 @@ class TrainScene(FormScene):
             self.knobs = KnobsPanel(self.form, settings)
             self.view = view(self)
             self._look()
-            self._lay()
+            self.build()
             self.form.focus(self.start_button)
             self.lay_out()
         except BaseException:  # nobody closes a scene that could not be built
@@ -114,24 +113,23 @@ class TrainScene(FormScene):
 
     # Rows
 
-    def _lay(self) -> None:
-        """Describe the panel anew; the focus stays on what has the same name."""
-        before, page, self._page = self.form, self._page, self._shown_page
-        scrolled = self.panel.scrolled if self._laid is not None and page == self._page else 0.0
-        self.form = self.knobs.form = Form(self.context, before.back)
-        self.panel = Panel(self.form)
+    def build(self) -> None:
+        page, self._page = self._page, self._shown_page
+        if page != self._page:
+            self.panel = Panel(self.form)
+        super().build()
+        if page != self._page and self.panel.widgets:  # from its top
+            self.form.focus(self.panel.widgets[0])
+
+    def add_rows(self) -> None:
+        self.knobs.form, self._layout = self.form, None
+        self.panel = Panel(self.form, self.panel)
         self._foot = self.panel if self._low else Panel(self.form)
         self._pointed = self.view.pointers()
         for widget, _ in self._pointed:
             self.form.add(widget)
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        self.form.follow(before, self.start_button)
-        if page != self._page and self.panel.widgets:  # from its top
-            self.form.focus(self.panel.widgets[0])
-        self._laid, self._layout = self._rows_key, None
-        self.lay_out()
-        self.panel.scroll(scrolled)
 
     @property
     def _shown_page(self) -> Hashable:
@@ -148,8 +146,7 @@ class TrainScene(FormScene):
         """Whether there is so little room that all rows scroll, those of the foot too."""
         return self._room.height < _LOW
 
-    @property
-    def _rows_key(self) -> Hashable:
+    def state(self) -> Hashable:
         run = self.run
         return (
             self._settings.opened, self.knobs.key, self.view.key, bool(run.problem), run.alive, run.stopping,
@@ -270,13 +267,8 @@ class TrainScene(FormScene):
         outcome = self.view.update()
         self._frame += 1
         self._look()
-        self.charts.update(at_once=self._settings.reduced_motion)
         self.explained.update()
-        outcome = self.form.update() or outcome
-        if self._rows_key != self._laid and not any(widget.held or widget.typing for widget in self.form.widgets):
-            self._lay()
-        self.lay_out()
-        return outcome
+        return super().update() or outcome
 
     def _listen(self) -> None:
         """Receive the worker's messages; show the run's settings once it tells them, and whether it goes on."""

@@ -17,13 +17,13 @@ from game.scenes.train.charts import Beside
 from game.scenes.train.rewind import Rewind
 from game.training.record import EarlierRun
 from game.training.run import TrainingRun
-from game.ui.curves import RUN_STYLES
+from game.ui.curves import run_style
 from game.world.swarm import LearningSwarm
 
 HEAD: Final = 130.0  # points of the box, for the title above two swarms
 _SAID: Final = 66.0  # height of the words below each half
 _MARGIN: Final = 28.0
-_STYLE: Final = 1  # of the experiment's curves: see RUN_STYLES
+_STYLE: Final = 1  # of the experiment's curves: see run_style
 
 
 class Swarms:
@@ -130,7 +130,7 @@ class Swarms:
     def _write(self, canvas: Canvas, left: float, number: int, run: TrainingRun, share: int | None) -> None:
         """Write a run's name and the share that lands below its swarm."""
         width, top = self._halves.width / 2 - 2 * _MARGIN, self._halves.bottom - _SAID + 6
-        colour = (NET, RUN_STYLES[_STYLE][0])[number]
+        colour = (NET, run_style(_STYLE)[0])[number]
         cursor = Cursor(left + _MARGIN, top, width, canvas.scale, canvas, size=TEXT, colour=colour)
         cursor.pair(self._names[number], "" if share is None else texts.SPLIT_LANDED.format(percent=share))
         if run.state in (WorkerState.FAILED, WorkerState.ENDED):

@@ -14,7 +14,7 @@ from game.core import texts
 from game.scenes.train.advice import Advice
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.panel import Column
+from game.ui.panel import Panel
 from game.ui.widget import Widget
 from tests.support.points import HEALTHY, point_of
 
@@ -41,7 +41,7 @@ def test_every_hint_has_words() -> None:
 def words_of(advice: Advice, context: Context) -> dict[str, Widget]:
     form = Form(context)
     if advice.shown:
-        advice.describe(Column(form))
+        advice.describe(Panel(form))
     return {each.label: each for each in form.widgets}
 
 

@@ -128,7 +128,7 @@ def test_a_short_run_beside_a_long_one_is_measured_by_the_same_seconds() -> None
     charts = TrainingCharts(LANDER_CHARTS)
     looked(charts, long_run(12.0, 200_000.0), Beside([EarlierRun("long", long_run(367.0, 4e6), 1)]))
     for chart in charts.charts:
-        assert chart.x_range == pytest.approx((0.0, 367.0))
+        assert chart.end == pytest.approx(367.0)
         assert chart.runs[0].x[-1] == pytest.approx(12.0)
 
 
