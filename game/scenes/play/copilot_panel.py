@@ -10,7 +10,8 @@ from ai.agent.decision import Decision
 from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import LINE, NET, SMALL
 from game.explain.landings import Landing, Landings, RecentLandings, draw_landings
 from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.explain.readouts import draw_share
@@ -18,13 +19,15 @@ from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import HELD, SixFutures
 from game.flight.networks import QPolicy, flew, word
-from game.scenes.play.words import Why, why_by_futures, why_by_values
+from game.scenes.play.words import changed_by
 from game.ui.listing import shortened
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ai.copilot.copilot import SharedDecision
 
-_SIZE: Final = (280.0, 388.0)
+_SIZE: Final = (280.0, 366.0)
 _TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
 _LEFT: Final = 20  # left edge of the content, from the panel's corner
 _WIDTH: Final = _SIZE[0] - 40
@@ -39,15 +42,14 @@ class CopilotPanel:
         shown: whether there is something to explain.
         values: what the decision that is flown weighs: where the network lands if a guardian has looked ahead, or if
             the person flies alone, else the Q-values; None before the first.
-        why: whose action is flown, and why: a title and two lines.
+        why: lines that say why it is flown.
 
     """
 
     def __init__(self) -> None:
         self.shown = False
         self.values: QValues | Landings | None = None
-        self.why: Why = ("", "", "")
-        self._overridden = False  # whether the co-pilot flies something else than was asked for
+        self.why: Sequence[str] = ()
         self._recent = RecentLandings()
         self._seen: object = None
 
@@ -64,27 +66,20 @@ class CopilotPanel:
         if decision is None and futures:
             self.shown, self._seen = True, None
             self.values = landings_of(futures, flight)
-            self.why = ("" if flight.chooser.shared else texts.SIX_FUTURES_WHY, "", "")
+            self.why = ()
             return
-        self.shown, self._overridden = decision is not None, self._overridden and decision is self._seen
+        self.shown = decision is not None
         if decision is None or decision is self._seen:
             return
         self._seen = decision
         if isinstance(decision, Decision):
             self.values = QValues.of(decision)
-            first, second = decision_words(decision)
-            self.why = texts.COPILOT_PANEL_ALONE, first, second
+            self.why = decision_words(decision)
+        elif decision.held is not None:
+            self.values, self.why = self._recent.fill(Landings.of(decision)), (changed_by(decision),)
         else:
-            self._explain(decision, int(flight.env.target[0]))
-
-    def _explain(self, decision: SharedDecision, pad: int) -> None:
-        """Show a shared decision, by its values for one of the pads where there are no futures."""
-        if decision.held is not None:
-            landings = Landings.of(decision)
-            self.values, self.why = self._recent.fill(landings), why_by_futures(decision, landings)
-        else:
-            self.values, self.why = shared_values(decision, pad), why_by_values(decision, pad)
-        self._overridden = bool(decision.overridden[0])
+            self.values = shared_values(decision, int(flight.env.target[0]))
+            self.why = () if np.isfinite(self.values.points).all() else texts.VALUES_DAMAGED
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         view, (width, height) = canvas.view, _SIZE
@@ -107,15 +102,11 @@ class CopilotPanel:
         elif self.values is not None:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
-        self._draw_why(canvas, left, top + _WHY + 26)
+        rows = Cursor(left, top + _WHY + 8, _WIDTH, canvas.scale, canvas)
+        for line in self.why:
+            rows.aside(line)
         if share is not None:
-            draw_share(canvas, left, top + _WHY + 104, _WIDTH, share, flew(network))
-
-    def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
-        title, *lines = self.why
-        canvas.text(title, (left, top), colour=NET if self._overridden else INK, room=_WIDTH)
-        for number, line in enumerate(lines):
-            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
+            draw_share(canvas, left, top + _SIZE[1] - 30, _WIDTH, share, flew(network))
 
 
 def landings_of(futures: SixFutures, flight: Flight[Crew]) -> Landings:

@@ -6,15 +6,10 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
-from ai.lander.pilots import COAST
 from ai.lander.sensing import near_edges
 from game.core import texts
-from game.core.catalogue import capital
 from game.explain.landings import Landing, Landings
-from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.flight import networks
 from game.flight.choosers import Crew
 from game.flight.credit import Credit
@@ -26,13 +21,11 @@ from game.input.controls import Controls
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
 
-Why = tuple[str, str, str]  # a title, and two lines
 _FLOWN_BY, _WARNED, _CHANGED, _AT_ONCE = range(4)  # how urgent sentences are
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
 _AHEAD: Final = 0.9  # seconds of look-ahead for stopping a turn
 _TOP: Final = 3.5  # metres below the top of the area, within which to release the engine
-_LEAST_LOSS: Final = 0.05  # points below the best that are called so
 
 
 # What the pilot must know
@@ -49,8 +42,12 @@ def sentence(flight: Flight[Crew], credit: Credit, changed: str, controls: Contr
         said.append((_AT_ONCE, words.format(main=controls.word(Held.MAIN), other=controls.word(other))))
     if changed:
         said.append((_CHANGED, changed))
-    back = networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER))
-    said.append((_FLOWN_BY, credit.header if by_hand else back))
+    flies = credit.header
+    if not by_hand:
+        flies = networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER))
+    elif flight.chooser.copilot and not (flight.chooser.shared or credit.alone):
+        flies = texts.YOU_FLY_HELP.format(key=controls.word(Command.FASTER))
+    said.append((_FLOWN_BY, flies))
     urgency, words = max(said)
     return words, urgency in (_AT_ONCE, _WARNED)
 
@@ -99,13 +96,8 @@ def dangers(env: LanderEnv) -> Iterator[str]:
         yield texts.EDGE_ENDS.format(where=texts.AND.join(ahead))
     if 0 < start - time < _SOON:
         yield texts.ENGINE_FAILS.format(seconds=start - time)
-    left = conditions.tank - float(env.fuel[0])
-    if left <= 0:
+    if env.fuel[0] >= conditions.tank:
         yield texts.TANK_EMPTY
-    elif left < LITTLE_FUEL * conditions.tank:
-        yield texts.TANK_LOW.format(seconds=left)
-    if env.limits.time - time < LITTLE_TIME:
-        yield texts.TIME_SHORT.format(seconds=max(0.0, env.limits.time - time))
 
 
 def surroundings(env: LanderEnv) -> Iterator[str]:
@@ -144,18 +136,15 @@ def dial_words(assist: float, problem: str = "") -> str:
 
 
 def changed_by(decision: SharedDecision) -> str:
-    """Say in one sentence what a guardian has just changed; empty where it has changed nothing."""
+    """Say in one sentence what a guardian has just changed; empty where it has changed nothing, or only waits."""
     landings = Landings.of(decision)
+    action, after = landings.asked
     if not decision.overridden[0]:
         return texts.GUARDIAN_LOST if landings.lost and Landing.UNKNOWN not in landings.after else ""
-    action, after = landings.asked
+    if after is Landing.UNKNOWN:
+        return ""
     name, seconds = texts.said(ACTION_NAMES[action]), f"{landings.seconds:.1f}"
     return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
-
-
-def is_late(decision: SharedDecision) -> bool:
-    """Whether a guardian has changed what was asked for because that had not been flown ahead in time."""
-    return bool(decision.overridden[0]) and Landings.of(decision).asked[1] is Landing.UNKNOWN
 
 
 def why_not_saved(flight: Flight[Crew]) -> str:
@@ -165,40 +154,3 @@ def why_not_saved(flight: Flight[Crew]) -> str:
         return texts.GUARDIAN_BARE.format(since=f"{guard.bare:.1f}")
     by_values = flight.chooser.copilot and (guard is None or guard.ahead.problem)
     return texts.NOT_SAVED_BY_VALUES if by_values else ""
-
-
-def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:
-    """Explain whose action a guardian flies, by the futures that decided it."""
-    from ai.copilot.guardian import ActionSource
-
-    source = ActionSource(int(decision.source[0]))
-    action, after = landings.asked
-    if source is not ActionSource.PILOT:
-        key = f"changed_{after.value}"
-    elif decision.held is not None and decision.held[0]:
-        key = "passes"
-    else:
-        key = "looking" if Landing.UNKNOWN in landings.after else "none"
-    asked, flown = (texts.said(ACTION_NAMES[each]) for each in (action, landings.flown))
-    words = {"asked": capital(asked), "flown": capital(flown), "seconds": f"{landings.seconds:.1f}"}
-    first, second = (line.format(**words) for line in texts.GUARDIAN_WHY[key])
-    return texts.COPILOT_PANEL_WHY[source.name], first, second
-
-
-def why_by_values(decision: SharedDecision, pad: int) -> Why:
-    """Explain whose action is flown by the values for one of the pads, which decided it."""
-    from ai.copilot.guardian import ActionSource
-
-    source, asked = ActionSource(int(decision.source[0])), int(decision.pilot[0])
-    title = texts.COPILOT_PANEL_WHY["HANDS_OFF" if asked == COAST else source.name]
-    points = decision.points[0, pad]
-    if not np.isfinite(points).all():
-        return title, *texts.VALUES_DAMAGED
-    if asked == COAST:
-        return title, *texts.COPILOT_PANEL_HANDS_OFF
-    loss = float(points.max() - points[asked])
-    name = capital(texts.said(ACTION_NAMES[asked]))
-    template = texts.COPILOT_PANEL_BELOW if loss >= _LEAST_LOSS else texts.COPILOT_PANEL_SAME
-    flown = texts.COPILOT_PANEL_ENOUGH if source is ActionSource.PILOT else texts.COPILOT_PANEL_CHANGED
-    action = texts.said(ACTION_NAMES[int(decision.action[0])])
-    return title, template.format(asked=name, loss=f"{loss:.1f}"), flown.format(flown=action)

@@ -1,6 +1,5 @@
 """Watch and the co-pilot's panel draw what was decided, over whole flights of the networks that come with the game."""
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +11,6 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision
 from ai.lander.environment import Outcome
 from ai.lander.push import KEYS
-from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.explain.q_values import SPAN
@@ -135,14 +133,14 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
 
 
 @pytest.mark.parametrize("pads", [1, 3])
-def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
+def test_the_co_pilots_panel_draws_the_shared_decision(
     agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, pads: int
 ):
     flight, drawn = begun(5, agent, pads=pads), Drawn(monkeypatch)
     copilot_panel = CopilotPanel()
     flight.chooser.help(0.5)
     rng = np.random.default_rng(1)
-    titles, held = set(), 0
+    held = 0
     while flight.at < 500:
         if flight.at % 7 == 0:
             held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
@@ -155,18 +153,5 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
         drawn.clear()
         copilot_panel.draw(canvas, 0.5)
         pad, flown = int(flight.env.target[0]), flight.recording.pushes[-1].action
-        titles.add(copilot_panel.why[0])
         points = agent.q_values(decision.observation[0, pad])[0] / agent.config.reward_scale
         check(read_panel(drawn), points, flown)
-        read_why(copilot_panel.why, overridden=flight.choice.overridden)
-    assert len(titles) > 2
-
-
-def read_why(why: tuple[str, str, str], *, overridden: bool) -> None:
-    """The words agree with what was flown, and with each other."""
-    title, *lines = why
-    assert not (overridden and title == texts.COPILOT_PANEL_WHY["PILOT"][0])
-    figures = [float(figure) for line in lines for figure in re.findall(r"\d+\.\d+", line)]
-    if len(figures) == 2:
-        below, allowed = figures
-        assert below > allowed if overridden else below <= allowed
