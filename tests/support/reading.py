@@ -76,8 +76,8 @@ class Page:
             if (found := re.fullmatch(r"(you|the network) (\d+) %", part))
         ]
         self.flew = {FLEW[part] for part in parts if part in FLEW}
-        named = [part for before, part in pairwise(parts) if before == "The network flew"]
-        self.by_network = int(named[0].removesuffix(" %")) if named else 0  # percent of the flight, on its card
+        named = [re.fullmatch(r"(\d+) %", part) for before, part in pairwise(parts) if before == "The network flew"]
+        self.by_network = next((int(found[1]) for found in named if found), 0)  # percent of the flight, on its card
 
 
 class Reading:
