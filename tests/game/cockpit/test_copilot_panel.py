@@ -97,7 +97,7 @@ def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
             named = readouts[FIGURES[cause]]
             assert named.within is False
             if cause is not Cause.TILTED:
-                figure = float(outcome_card(flight.env, 1.0).reason.split("at ")[-1].split()[0])
+                figure = float(outcome_card(flight.env).reason.split("at ")[-1].split()[0])
                 assert float(named.figure) == pytest.approx(figure, abs=0.051)
     assert seen > 30
 

@@ -251,9 +251,7 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
     assert play(driver).flight.outcome is Outcome.LANDED
     you = round(100 * play(driver).flight.share)
     assert 0 < you < 100
-    assert texts.SHARE_YOU.format(percent=you) in words
-    assert texts.SHARE_NETWORK.format(who=texts.THE_NETWORK, percent=100 - you) in words
-    assert texts.CARD_SAVED[1] in words
+    assert texts.DIAL_JOIN.join((f"{100 - you} %", texts.CARD_SAVED.format(count=1))) in words
     assert Records(context.user_dir).entries()[-1].alone is False
 
 
