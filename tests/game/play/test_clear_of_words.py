@@ -96,7 +96,7 @@ def test_every_word_of_play_and_its_pause_changes_with_the_language(
     open_game: Open, monkeypatch: pytest.MonkeyPatch, written: list[str]
 ):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-    same = {"Enter", "Esc", "Tab", "stand-in", "DRIFT", "Mission"}
+    same = {"Enter", "Esc", "Tab", "stand-in", "Pilot: stand-in", "DRIFT", "Mission"}
 
     def words() -> set[str]:
         written.clear()
