@@ -93,7 +93,6 @@ class Earned:
 
     @property
     def seconds(self) -> float:
-        """Duration of the flight."""
         return self.steps * DT
 
 

@@ -31,7 +31,6 @@ def claimed(record: Record) -> ClaimedFlight:
 
 
 def code(record: Record) -> str:
-    """Return a record as a code for a message."""
     return code_of(claimed(record))
 
 

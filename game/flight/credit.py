@@ -36,13 +36,7 @@ class Rules(Protocol):
 
 
 def eased(settings: Settings) -> Easing:
-    """Return the easing that the player has chosen for the next flight."""
     return Easing(settings.wider_pads, settings.untimed)
-
-
-def help_word(assist: float) -> str:
-    """Return the word for help of that assist, 0 to 1: the most of which it reaches."""
-    return next(word for word in reversed(HELP) if assist >= ASSISTS[word])
 
 
 class Credit:
@@ -84,12 +78,12 @@ class Credit:
 
     @property
     def header(self) -> str:
-        """Text that says who flies."""
         flight = self._flight
         if flight.chooser.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
         if flight.chooser.shared and flight.chooser.copilot:
-            return texts.YOU_SHARE[help_word(flight.chooser.copilot.assist)]
+            assist = flight.chooser.copilot.assist
+            return texts.YOU_SHARE[next(word for word in reversed(HELP) if assist >= ASSISTS[word])]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
 
     # What made it easier
@@ -119,7 +113,6 @@ class Credit:
 
     @property
     def _slow(self) -> str:
-        """The slowest pace in words."""
         slowest = self.pace if self._flight.over else min(self.pace, self._settings.pace)
         percent = round(100 * slowest)
         return texts.ASSIST_HALF_SPEED if percent == 50 else texts.ASSIST_WORDS["pace"].format(percent=percent)
@@ -144,7 +137,6 @@ class Credit:
 
     @property
     def barred(self) -> str:
-        """The reason in a sentence, where there is one."""
         return texts.NOT_COUNTED[self.bar].format(who=self.who)
 
     @property

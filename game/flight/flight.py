@@ -59,7 +59,6 @@ class Flight(Generic[C]):
 
     @property
     def at(self) -> int:
-        """Steps flown."""
         return len(self.recording.pushes)
 
     @property
@@ -69,7 +68,6 @@ class Flight(Generic[C]):
 
     @property
     def over(self) -> bool:
-        """Whether it has ended."""
         return self.outcome is not Outcome.FLYING
 
     @property
@@ -79,7 +77,6 @@ class Flight(Generic[C]):
 
     @property
     def wrecked(self) -> bool:
-        """Whether it has ended in a wreck."""
         return self.outcome is Outcome.CRASHED and not self.intact
 
     @property

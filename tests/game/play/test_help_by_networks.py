@@ -192,9 +192,7 @@ def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open,
 
 
 @pytest.mark.parametrize("damage", ["missing", "another"])
-def test_where_it_cannot_be_read_the_usual_network_flies(
-    open_game: Open, context: Context, copied: Path, damage: str
-):
+def test_where_it_cannot_be_read_the_usual_network_flies(open_game: Open, context: Context, copied: Path, damage: str):
     folder = copied / networks.ANYWHERE
     shutil.rmtree(folder)
     if damage == "another":
