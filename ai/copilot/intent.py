@@ -31,6 +31,7 @@ class Intent:
         self.chances: Doubles = np.ones((0, 0))
 
     def likely(self, slots: int, pads: int) -> Doubles:
+        """Return the chances so far, (n, pads)."""
         if self.chances.shape != (slots, pads):
             self.chances = np.full((slots, pads), 1.0 / pads)
         return self.chances

@@ -76,6 +76,7 @@ class _Content(Start):
 
 
 def code_of(flight: ClaimedFlight) -> str:
+    """Return the code of a flight."""
     recording, claim = flight.recording, flight.claim
     end = [round(_GRID * min(max(number, -_FAR), _FAR)) for number in claim.end]
     values = recording.start() | {"course": flight.course, "barred": flight.barred[:_LONGEST_NAME]}

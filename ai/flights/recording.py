@@ -35,9 +35,11 @@ class Easing:
         return WIDER if self.wider_pads else 1.0
 
     def limits(self, limits: Limits) -> Limits:
+        """Return a flight's limits, eased."""
         return replace(limits, time=UNHURRIED) if self.untimed else limits
 
     def mission(self, name: str) -> Mission:
+        """Return a mission, eased."""
         mission = STARTS[name]
         pad = replace(mission.pad, width=self.pads * mission.pad.width)
         return replace(mission, pad=pad, limits=self.limits(mission.limits))

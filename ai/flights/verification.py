@@ -93,6 +93,7 @@ class Earned:
 
     @property
     def seconds(self) -> float:
+        """Duration of the flight."""
         return self.steps * DT
 
 

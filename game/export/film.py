@@ -95,6 +95,7 @@ def frames(make: Scenes, record: Record, steps: Iterable[int], colour_safe: bool
 
 
 def unfinished(path: Path) -> Path:
+    """Return the path of a file while it is incomplete."""
     return path.with_name(f".{path.name}.part")
 
 

@@ -73,9 +73,11 @@ class Recorded:
 
     @property
     def hand(self) -> StickHolder:
+        """Who flew the first step."""
         return next(iter(self._source.hands), StickHolder.HUMAN)
 
     def choose(self, flight: Flight[Any]) -> Choice:
+        """Return what was pushed then, and who chose it."""
         at, source = flight.at, self._source
         if at >= len(source.pushes):
             return Choice(_NOTHING, flight.flown_by)
@@ -101,6 +103,7 @@ class Alone:
         return decide(self.network, seen, env.actions)
 
     def choose(self, flight: Flight[Any]) -> Choice:
+        """Return what it decided last."""
         if self._decision is None or self._age == self._steps:
             self._decision, self._age = self.decide(flight), 0
         self._age += 1
@@ -181,6 +184,7 @@ class Crew:
         self._anew()
 
     def help(self, assist: float) -> None:
+        """Set the co-pilot's assist, 0 to 1, from the next decision on."""
         if self.copilot:
             self.copilot.assist = assist
 

@@ -31,6 +31,7 @@ def claimed(record: Record) -> ClaimedFlight:
 
 
 def code(record: Record) -> str:
+    """Return a record as a code for a message."""
     return code_of(claimed(record))
 
 

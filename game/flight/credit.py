@@ -36,6 +36,7 @@ class Rules(Protocol):
 
 
 def eased(settings: Settings) -> Easing:
+    """Return the easing that the player has chosen for the next flight."""
     return Easing(settings.wider_pads, settings.untimed)
 
 
@@ -78,6 +79,7 @@ class Credit:
 
     @property
     def header(self) -> str:
+        """Text that says who flies."""
         flight = self._flight
         if flight.chooser.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
@@ -113,6 +115,7 @@ class Credit:
 
     @property
     def _slow(self) -> str:
+        """The slowest pace in words."""
         slowest = self.pace if self._flight.over else min(self.pace, self._settings.pace)
         percent = round(100 * slowest)
         return texts.ASSIST_HALF_SPEED if percent == 50 else texts.ASSIST_WORDS["pace"].format(percent=percent)
@@ -137,6 +140,7 @@ class Credit:
 
     @property
     def barred(self) -> str:
+        """The reason in a sentence, where there is one."""
         return texts.NOT_COUNTED[self.bar].format(who=self.who)
 
     @property

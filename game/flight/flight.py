@@ -59,6 +59,7 @@ class Flight(Generic[C]):
 
     @property
     def at(self) -> int:
+        """Steps flown."""
         return len(self.recording.pushes)
 
     @property
@@ -68,6 +69,7 @@ class Flight(Generic[C]):
 
     @property
     def over(self) -> bool:
+        """Whether it has ended."""
         return self.outcome is not Outcome.FLYING
 
     @property
@@ -77,6 +79,7 @@ class Flight(Generic[C]):
 
     @property
     def wrecked(self) -> bool:
+        """Whether it has ended in a wreck."""
         return self.outcome is Outcome.CRASHED and not self.intact
 
     @property

@@ -93,6 +93,7 @@ class Entry:
 
     @property
     def landed(self) -> bool:
+        """Whether the flight ended in a landing."""
         return self.outcome == Outcome.LANDED.name
 
 
@@ -151,6 +152,7 @@ def write(path: Path, record: Record) -> None:
 
 
 def to_text(record: Record) -> str:
+    """Return a record as the text of a flight's file."""
     recording = record.recording
     saved = {"format": FORMAT, "version": VERSION} | recording.start() | {
         "pushes": _packed(f"{push.main:.0f},{push.side:.0f}" for push in recording.pushes),

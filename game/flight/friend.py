@@ -38,6 +38,7 @@ def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push |
 
 
 def copy(context: Context, record: Record) -> None:
+    """Copy a flight as a code."""
     give(context, codes.code(record), texts.CODE_COPIED)
 
 

@@ -37,6 +37,7 @@ class Taps:
         self._now = self._tapped = _NOTHING
 
     def follow(self, push: Push) -> None:
+        """Follow one step's stick."""
         main, side = self._tapped
         before, self._now = self._now, push
         self._tapped = Push(main if before.main else push.main or main, side if before.side else push.side or side)
@@ -47,6 +48,7 @@ class Taps:
         return Push(self._now.main or self._tapped.main, self._now.side or self._tapped.side)
 
     def forget(self) -> None:
+        """Forget the taps: they are flown."""
         self._tapped = _NOTHING
 
 
@@ -82,6 +84,7 @@ class Guard:
 
     @property
     def hand(self) -> StickHolder:
+        """Who holds the stick."""
         return self._crew.hand
 
     def acts(self, flight: Flight[Any]) -> bool:
@@ -189,6 +192,7 @@ class Guard:
 
 
 def _begins(flight: Flight[Any]) -> bool:
+    """Whether a decision is due."""
     return flight.at % DECISION_STEPS == 0
 
 

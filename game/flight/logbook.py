@@ -87,14 +87,17 @@ class Records:
         return found
 
     def kept(self) -> set[str]:
+        """Return the names of the existing flight files."""
         with suppress(OSError):
             return {path.name for path in self.folder.glob("*.json")}
         return set()
 
     def read(self, name: str) -> Record:
+        """Read a flight. Raises ValueError, which names the file and the problem."""
         return flight_file.read(self.folder / name)
 
     def _write(self, record: Record) -> Entry:
+        """Write a flight's file under an unused name; return its line."""
         moment = f"{datetime.fromtimestamp(record.entry.when):%Y-%m-%d %H.%M.%S.%f}"[:-3]
         path = free_path(self.folder, moment, ".json")
         entry = replace(record.entry, file=path.name)

@@ -79,6 +79,7 @@ def _where_left(env: LanderEnv) -> str:
 
 
 def flight_figures(env: LanderEnv) -> tuple[tuple[str, str, str], ...]:
+    """Return the figures of a flight that has ended: label, value, unit."""
     figures = [
         (texts.TIME, f"{tenths(float(env.time[0])):.1f}", "s"),
         (texts.FUEL, f"{tenths(float(env.fuel[0])):.1f}", "s"),

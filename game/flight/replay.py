@@ -18,6 +18,7 @@ _EXACT: Final = 1e-6  # tolerance of the end pose in metres and radians, for rou
 
 
 def replayed(source: Recording) -> Flight[Recorded]:
+    """Begin a flight that repeats a recorded one."""
     return Flight(source, Recorded(source))
 
 
@@ -41,10 +42,12 @@ class FlightReplay:
 
     @property
     def at(self) -> int:
+        """Physics step that is shown, counted from the start."""
         return self.flight.at
 
     @property
     def reached(self) -> int:
+        """Last step that can be shown, which is the scout's."""
         return self._scout.at
 
     @property
@@ -87,6 +90,7 @@ class FlightReplay:
                 self._moments.append(self._scout.env.snapshot())
 
     def step(self) -> None:
+        """Show the next step."""
         if self.at >= self.reached:
             self.scout(1)
         if self.at < self.reached:
