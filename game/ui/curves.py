@@ -30,25 +30,8 @@ _ARROWS_APART: Final = 14.0
 _BLEED: Final = 3.0  # points that a line may reach out of the plot
 _TICK_SPACING: Final = 4.0  # points
 
-# Blue is the current run; the others differ from it and from each other in dashes, and in colour, for eyes of
-# every kind: neighbours in both, and no two of them are alike in both.
-_COLOURS: Final[tuple[Colour, ...]] = (
-    (236, 140, 190), (222, 214, 160), (144, 98, 244), (168, 182, 96), (204, 208, 220), (206, 118, 236)
-)  # fmt: skip
-_DASHES: Final[tuple[tuple[float, ...], ...]] = ((7.0, 5.0), (2.0, 4.0), (10.0, 4.0, 2.0, 4.0), (16.0, 5.0))
-_OTHERS: Final = len(_COLOURS) * len(_DASHES)
-RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
-    (NET, ()),
-    *(
-        (_COLOURS[number % len(_COLOURS)], _DASHES[(number + number // len(_COLOURS)) % len(_DASHES)])
-        for number in range(_OTHERS)
-    ),
-)
-
-
-def run_style(number: int) -> tuple[Colour, tuple[float, ...]]:
-    """Return colour and dashes of a run, 0 for the current one; beyond those there are, they begin again."""
-    return RUN_STYLES[number] if number == 0 else RUN_STYLES[1 + (number - 1) % _OTHERS]
+# Blue is the current run; one beside it differs in colour and in dashes, for eyes of every kind.
+RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = ((NET, ()), ((236, 140, 190), (7.0, 5.0)))
 
 
 class Series:

@@ -146,6 +146,7 @@ class Form:
         `otherwise` has the focus where its key is gone.
         """
         self.manager.mouse_position = before.manager.mouse_position
+        self._held_steps, self._held_direction = before._held_steps, before._held_direction
         for widget in self.widgets:
             if same := before.find(widget.key):
                 widget.warmth = same.warmth
