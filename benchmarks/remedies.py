@@ -71,7 +71,7 @@ class Watched:
         pace = ALONE if self.config.num_envs == 1 else PACE
         clock = count(0.0, 0.5 * self.config.num_envs / pace).__next__
         self._run = LanderSession.live(self.config, 0, keep=self.keep, resume=self.resume, clock=clock)
-        self.adviser = Adviser(self.config)
+        self.adviser = Adviser()
         self.history.reward_scale = self.config.reward_scale
         if self.resume:
             self.history = History.read(self.resume)
@@ -124,7 +124,8 @@ def follow(run: Watched, *, apply: bool, until: int) -> tuple[list[str], float, 
         if not (apply and hint and (hint.remedy or hint.back_to is not None)):
             continue
         fault = run.landed if not pressed else fault
-        remedy, back_to = dict(run.adviser.apply(went_back=True)), hint.back_to
+        remedy, back_to = dict(hint.remedy), hint.back_to
+        run.adviser.dismiss()
         pressed.append(f"{hint.name} {remedy}" + ("" if back_to is None else f" back to {back_to:,}"))
         last = run.decisions + RECOVERY
         live_ones = all(Config.__dataclass_fields__[name.partition(".")[0]].metadata["live"] for name in remedy)

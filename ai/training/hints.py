@@ -161,8 +161,7 @@ class Hint:
 class Adviser:
     """Adviser that chooses the one hint to show. Times are seconds of training, as the history counts them."""
 
-    def __init__(self, config: Config) -> None:
-        self.config = config
+    def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
@@ -171,11 +170,9 @@ class Adviser:
         self._now = self._shown_since = 0.0
         self._since: dict[str, float] = {}  # when each rule that holds began to
         self._rests: dict[str, float] = {}  # until when each is quiet
-        self._before: dict[str, Any] | None = None  # what the last remedy has changed
 
     def advise(self, history: History, config: Config) -> Hint | None:
         """Return what to show now, if anything; call it as often as there is news."""
-        self.config = config
         if not len(history.points):
             return None
         now = float(history["seconds"][-1])
@@ -204,28 +201,6 @@ class Adviser:
             self._shown_since = self._now
         remedy = {name: value for name, value in rule.remedy(run).items() if value != attrgetter(name)(run.config)}
         self.shown = Hint(rule.name, remedy, rule.back_to(run))
-
-    def apply(self, *, went_back: bool = False) -> Mapping[str, Any]:
-        """Take the remedy of the hint that is shown: the values to set. The hint goes; `undo` has the way back.
-
-        `went_back` says that a remedy was also to return to a checkpoint, which can be undone as well.
-        """
-        if self.shown is None:
-            return {}
-        remedy = self.shown.remedy
-        self._before = {name: attrgetter(name)(self.config) for name in remedy} if remedy or went_back else None
-        self.dismiss()
-        return remedy
-
-    @property
-    def can_undo(self) -> bool:
-        """Whether a remedy was applied that can be taken back."""
-        return self._before is not None
-
-    def undo(self) -> Mapping[str, Any]:
-        """Return the values that the last remedy replaced, once."""
-        before, self._before = self._before, None
-        return before or {}
 
     def dismiss(self) -> None:
         """Put the hint away; it will not come back at once."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ai.training.config import Config
 from ai.training.hints import Adviser, Hint
 from game.core import texts
 from game.drawing.tokens import HUMAN, SMALL
@@ -16,7 +15,7 @@ class Advice:
 
     def __init__(self, run: TrainingRun, settings: RunSettings) -> None:
         self._run, self._settings = run, settings
-        self.adviser = Adviser(Config())
+        self.adviser = Adviser()
         self._seen: object = None  # the network on which there was advice last
 
     @property

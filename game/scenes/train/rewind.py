@@ -58,9 +58,11 @@ class Rewind:
     def shift(self, direction: int) -> None:
         """Go a hundredth of the run back (-1) or on (1)."""
         swarms, known = self._run.swarms, self._run.history["decisions"]
+        if not len(known):
+            return
         before = known if swarms.begins is None else known[known < swarms.begins]
         moments = np.concatenate([before, swarms.moments])
-        here = len(moments) if self.moment is None else int(np.searchsorted(moments, self.moment))
+        here = int(np.searchsorted(moments, known[-1] if self.moment is None else self.moment))
         goal = max(here + direction * max(1, len(moments) // _STEPS), 0)
         self.go_to(float(moments[goal]) if goal < len(moments) else np.inf)
 

@@ -339,8 +339,11 @@ class TrainScene(FormScene):
     def _go_on_with_last(self) -> None:
         self.start(self.knobs.asked, 0, self.run.collection.unsaved)
 
-    def _save(self) -> Transition:
+    def _save(self) -> Transition | None:
         """Ask for a name to save the run under."""
+        if not (self.run.alive or self.run.kept):
+            self.context.note(texts.TRAIN_NOTHING)
+            return None
         return Push(NameDialog(self, texts.NAMING, self._free_name, self.run.save))
 
     def ask(self, answer: str) -> None:
@@ -371,6 +374,7 @@ class TrainScene(FormScene):
         """Draw what is seen of the run, and the panel beside it."""
         assert self._layout is not None
         display, box = self._layout.display, self._layout.swarm
+        canvas.fill(canvas.whole.surface.get_rect(), NIGHT0)  # below, a passing message takes a row
         self.view.draw(canvas, alpha)
         if not self.view.fills:
             canvas.fill(canvas.rect(display.left, box.bottom, display.width, display.bottom - box.bottom), NIGHT0)

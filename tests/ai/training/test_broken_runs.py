@@ -24,7 +24,7 @@ def watch(name: str) -> tuple[list[tuple[float, Hint]], list[Config]]:
     """
     said, configs, adviser = list[tuple[float, Hint]](), list[Config](), None
     for run in islice(growing(name), None, None, 3):
-        adviser = adviser or Adviser(run.config)
+        adviser = adviser or Adviser()
         if run.config not in configs:
             configs.append(run.config)
         hint = adviser.advise(run.history, run.config)

@@ -89,7 +89,7 @@ def seen(name: str) -> list[str]:
     found: list[str] = []
     adviser = None
     for number, run in enumerate(islice(growing(name), None, None, 4)):
-        adviser = adviser or Adviser(run.config)
+        adviser = adviser or Adviser()
         hint = adviser.advise(run.history, run.config)
         shown = None if number % 2 else caption(RecentCurves(run.history, run.config), hinted=hint is not None)
         if shown is None:

@@ -191,7 +191,7 @@ def names(shown: list[Hint | None]) -> list[str]:
 
 
 def test_a_hint_appears_once_it_has_held_and_not_before():
-    shown = names(watch(Adviser(MODERN), history(points(**CRASHES))))
+    shown = names(watch(Adviser(), history(points(**CRASHES))))
     first = shown.index("crashes")
     assert set(shown[:first]) == {""}
     assert first == pytest.approx(150 + 10 * HOLD, abs=2)  # ten points a second; late after 150,000 decisions
@@ -202,7 +202,7 @@ def test_a_hint_stays_for_a_while_and_goes_when_it_is_over_and_a_flicker_shows_n
         return 0.5 < share < 0.57 or int(400 * share) % 20 < 6
 
     spell = history(lambda share: replace(HEALTHY, epsilon=0.9 if random(share) else 0.1))
-    shown = names(watch(Adviser(MODERN), spell))
+    shown = names(watch(Adviser(), spell))
     assert shown.count("random") == pytest.approx(10 * STAY, abs=3)
     assert shown[-1] == ""
     assert len("".join("x" if each else " " for each in shown).split()) == 1, "once"
@@ -210,34 +210,24 @@ def test_a_hint_stays_for_a_while_and_goes_when_it_is_over_and_a_flicker_shows_n
 
 def test_the_most_severe_comes_first():
     both = history(points(**CRASHES, epsilon=0.9))
-    assert names(watch(Adviser(MODERN), both))[-1] == "crashes"
+    assert names(watch(Adviser(), both))[-1] == "crashes"
 
 
-def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once():
+def test_a_dismissed_hint_does_not_come_back_at_once():
     config = MODERN.changed(epsilon_end=0.6)
-    adviser: Any = Adviser(config)
-    run = history(points(epsilon=0.6), seconds=40.0 + REST)
-    shown = watch(adviser, run, config)
-    assert shown[-1] is not None
-    assert adviser.apply() == {"epsilon_end": 0.05}
-    assert adviser.can_undo
-    assert adviser.undo() == {"epsilon_end": 0.6}
-    assert not adviser.can_undo
-    assert adviser.undo() == {}
-
-    adviser = Adviser(config)
+    adviser, run = Adviser(), history(points(epsilon=0.6), seconds=40.0 + REST)
     growing, moments = History(), []
     for row in run.points:
         growing.append(point_of(row))
         if adviser.advise(growing, config):
             moments.append(float(row[0]))
-            adviser.apply()
+            adviser.dismiss()
     assert len(moments) == 2
     assert moments[1] - moments[0] >= REST
 
 
 def test_a_dismissed_hint_leaves_room_for_another():
-    adviser = Adviser(MODERN)
+    adviser = Adviser()
     run = history(points(**CRASHES, epsilon=0.9))
     assert names(watch(adviser, run, start=0))[-1] == "crashes"
     adviser.dismiss()
@@ -248,11 +238,11 @@ def test_a_dismissed_hint_leaves_room_for_another():
 
 
 def test_a_remedy_that_changes_nothing_is_none():
-    assert watch(Adviser(MODERN), history(points(**CRASHES)))[-1] == Hint("crashes", {})
+    assert watch(Adviser(), history(points(**CRASHES)))[-1] == Hint("crashes", {})
 
 
 def test_another_run_begins_without_the_past():
-    adviser = Adviser(MODERN)
+    adviser = Adviser()
     watch(adviser, history(points(**CRASHES)))
     assert adviser.shown
     assert adviser.advise(history(points(), points=3, seconds=0.3), MODERN) is None
@@ -265,7 +255,7 @@ def test_another_run_begins_without_the_past():
 @pytest.mark.slow
 def test_nothing_is_said_of_a_run_that_starts_well():
     config = MODERN.changed(gradient_steps=1)
-    training, run, adviser = Training(config, evaluate_every=0), History(), Adviser(config)
+    training, run, adviser = Training(config, evaluate_every=0), History(), Adviser()
     while training.agent.decisions < 30_000:
         progress = training.advance()
         run.append(replace(progress, seconds=progress.decisions / 1_000))

@@ -1,5 +1,4 @@
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pygame
@@ -7,13 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.training.history import History, SettingChange
 from game.drawing.canvas import Canvas
-from game.scenes.train.charts import ticks_of
 from game.ui import plotting
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
 from game.ui.charts import Charts
-from tests.ai.training.test_hints import HEALTHY
 
 BOX = (40, 450, 372, 128)
 NAN, INF = float("nan"), float("inf")
@@ -161,7 +157,7 @@ def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypa
         [
             Series([0.0, 10.0, 20.0], [1.0, 2.0, 3.0], "this run"),
             Series([0.0, 9.0, 20.0], [4.0, NAN, 6.0], "before", *RUN_STYLES[1]),
-            Series([0.0, 1.0], [7.0, 8.0], "ended long ago", *RUN_STYLES[2]),
+            Series([0.0, 1.0], [7.0, 8.0], "ended long ago", *RUN_STYLES[1]),
         ],
         (0.0, 20.0),
     )
@@ -343,18 +339,6 @@ def test_numbers_are_written_short() -> None:
         (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
     ):  # fmt: skip
         assert plotting.compact(value) == text
-
-
-def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
-    run = History()
-    for number in range(40):
-        run.append(replace(HEALTHY, seconds=float(number), decisions=1000.0 * number))
-    for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
-        run.append(SettingChange(10_000, name, 0, 1))
-    run.append(SettingChange(20_000, "gradient_steps", 1, 2))
-    marks = [tick for tick in ticks_of(run) if tick.kind == "knob"]
-    assert [tick.x for tick in marks] == [10.0, 20.0]
-    assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"
 
 
 def test_an_axis_that_begins_later_has_its_ends_at_the_ends_of_the_plot(canvas: Canvas) -> None:
