@@ -100,11 +100,11 @@ def draw(scene: DigitsScene, strokes: list[np.ndarray]) -> None:
 def tile(scene: DigitsScene, digit: int, drawn: list[np.ndarray]) -> pygame.Surface:
     """Return a drawing with the mouse's places on it, what was seen, and what was read."""
     picture = pygame.Surface((360, 180))
-    ink = pygame.surfarray.make_surface((scene.pad.ink.T[..., None] * [150, 150, 150]).astype(np.uint8))
+    ink = pygame.surfarray.make_surface((scene.pad.ink().T[..., None] * [150, 150, 150]).astype(np.uint8))
     for stroke in drawn:
         for x, y in stroke / 2:
             ink.set_at((int(x), int(y)), (255, 120, 0))
-    seen = (scene.reading.stages.centred.T[..., None] * [255, 255, 255]).astype(np.uint8)
+    seen = (scene.reading.image.T[..., None] * [255, 255, 255]).astype(np.uint8)
     picture.blit(pygame.transform.smoothscale(ink, (170, 170)), (0, 0))
     picture.blit(pygame.transform.scale(pygame.surfarray.make_surface(seen), (168, 168)), (180, 0))
     said = ", ".join(

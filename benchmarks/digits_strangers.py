@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.preprocessing import preprocess_strokes, redrawn, stages, stroke_stages
+from ai.digits.preprocessing import preprocess_strokes, stages
 from benchmarks.hand_styles import HANDS, UNSEEN
 from game.scenes.digits.reader import Reading, Verdict
 from tests.support.digit_styles import template_strokes
@@ -54,10 +54,8 @@ def read_zeros(networks, each, rng):
             *(f"{name} {np.mean(each == 0):.1%}" for name, each in zip(networks, read, strict=True)),
         )
     for digit in (0, 8):
-        seen = [stroke_stages(redrawn(narrow(digit, rng)), np.zeros((1, 1))) for _ in range(5 * each)]
-        readings = [
-            Reading(one, {name: network.predict(one.centred)[0] for name, network in networks.items()}) for one in seen
-        ]
+        seen = [preprocess_strokes(narrow(digit, rng)) for _ in range(5 * each)]
+        readings = [Reading(one, {name: each.predict(one)[0] for name, each in networks.items()}) for one in seen]
         answers = {name: np.array([read.probabilities[name].argmax() for read in readings]) for name in networks}
         sure = np.array([read.verdict("modern") is Verdict.SURE for read in readings]) & (answers["modern"] != digit)
         shares = [f"{name} {np.mean(read == digit):.1%}" for name, read in answers.items()]

@@ -127,7 +127,9 @@ def rows() -> dict[str, Row]:
         return scene
 
     def heap(context: Context) -> Scene:
-        return PhysicsScene(context, "heap")
+        scene = PhysicsScene(context, "heap")
+        scene.show_contacts(True)
+        return scene
 
     special = {
         "WatchScene", "PhysicsScene", "PhysicsStepScene", "ChapterScene", "mission", "descent", "LessonScene",
@@ -161,7 +163,7 @@ def rows() -> dict[str, Row]:
             f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
             for key in PATH
         },
-        "physics, contacts": Row(heap, (pygame.K_c,)),
+        "physics, contacts": Row(heap),
         "physics, one step": Row(
             lambda below: PhysicsStepScene(below.context, below.exhibit),
             (pygame.K_PERIOD,),
@@ -179,8 +181,8 @@ def rows() -> dict[str, Row]:
             )
             for name in ("modern", "classic")
         },
-        "inside, modern": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT, pygame.K_n)),
-        "inside, classic": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT, pygame.K_n), "classic"),
+        "inside, modern": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT)),
+        "inside, classic": of_seven(DigitInsideScene, (pygame.K_3, pygame.K_RIGHT), "classic"),
         "menu": Row(MenuScene),
         "train": of_tour("TrainScene", (pygame.K_RETURN,)),
         "train, split": Row(_split),

@@ -13,8 +13,8 @@ from statistics import mean, stdev
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from ai.training.statistics import wilson
-from game.scenes.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
-from game.scenes.learn.runs import BOUND, DARING, EVERY, NORMALISED, PAY, config_of
+from game.scenes.learn.memory import KEPT, TODAY, YESTERDAY, MemoryChapter
+from game.scenes.learn.runs import BOUND, DARING, PAY, RIGHT
 
 DECISIONS = 600
 # Student's t of a two-sided 95 % interval, by degrees of freedom from 1 on.
@@ -34,11 +34,11 @@ def run(config: Config, seed: int, plan: Plan | None = None, decisions: int = DE
 
 
 def target(seeds: Sequence[int]) -> None:
-    """Print how often values ran away, and how often landing was learned, for each interval of copies."""
-    for choice, every in enumerate(EVERY):
-        states = [run(config_of(choice), seed) for seed in seeds]
+    """Print how often values ran away, and how often landing was learned, with a target network and without."""
+    for config in (SMALL_RUN, *RIGHT):
+        states = [run(config, seed) for seed in seeds]
         beyond = sum(max(state.value for state in each) > BOUND for each in states)
-        layers = ", layers normalised" if choice == NORMALISED else ""
+        every, layers = config.target_update_interval, ", layers normalised" if config.layer_normalisation else ""
         print(
             f"target copied every {every}{layers}: values beyond {BOUND:g} in {beyond}, {_landed(states)}", flush=True
         )
@@ -46,15 +46,17 @@ def target(seeds: Sequence[int]) -> None:
 
 def memory(seeds: Sequence[int]) -> None:
     """Print for each memory and seed the share of tests that landed at yesterday's end, and the least of today."""
-    for kind, prioritised, keep in (("even", False, None), ("surprising", True, None), ("latest", False, LATEST)):
-        plan, config = MemoryChapter.PLAN._replace(keep=keep), SMALL_RUN.changed(prioritised=prioritised)
+    for keep in KEPT:
+        plan = MemoryChapter.PLAN._replace(keep=keep)
         ranges, least = [], []
         for seed in seeds:
-            shares = [state.passed or 0.0 for state in run(config, seed, plan, YESTERDAY + TODAY)[YESTERDAY - 1 :]]
+            shares = [state.passed or 0.0 for state in run(SMALL_RUN, seed, plan, YESTERDAY + TODAY)[YESTERDAY - 1 :]]
             least.append(min(shares[1:]))
             ranges.append(f"{shares[0]:.2f} to {least[-1]:.2f}")
         middle, low, high = mean_of_shares(least)
-        print(f"memory {kind}: {', '.join(ranges)}; least {middle:.0%} ({low:.0%} to {high:.0%})", flush=True)
+        print(
+            f"memory of {keep or 'all'}: {', '.join(ranges)}; least {middle:.0%} ({low:.0%} to {high:.0%})", flush=True
+        )
 
 
 def daring(seeds: Sequence[int]) -> None:

@@ -77,7 +77,7 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
     ("lesson", lesson, dict.fromkeys((5, 25, 45), pygame.K_RIGHT), 80),
     ("digits", DigitsScene, {}, 150),
-    ("physics", partial(PhysicsScene, exhibit="heap"), {60: pygame.K_c}, 400),
+    ("physics", partial(PhysicsScene, exhibit="heap"), {}, 400),
     (
         "mars",
         partial(PlayScene, seed=0, challenge=FlownMission(MISSIONS["mars"])),

@@ -104,20 +104,22 @@ class Constraints:
         return bool(change.any())
 
     def push(self, lacking: Array, total: Array) -> Array:
-        """Return the pushes (2, m) that are to take the place of `total`, so that points gain the speed they lack.
+        """Return the pushes p (2, m) that take the place of `total`, so that points gain at least the speed they lack.
 
-        Of the two points of a contact there are three cases. `together` they gain just what they lack: K·(p - total) =
-        lacking. But pushes are at least 0. Where one point would have to pull, it gets none, and the other is pushed
-        `alone`: it makes up for its own lack, and for what the first has done for it until now. Where both would, each
-        is asked alone, and gets no less than 0. (This is the linear complementarity problem p ≥ 0, K·(p - total) ≥
-        lacking, one of the two an equality at each point.)
+        No point can pull. So p ≥ 0, K·(p - total) ≥ lacking, and at each point one of the two is an equality: a linear
+        complementarity problem, with four cases for the two points of a contact.
+
+            to gain just what they lack, both push      p is that
+            one would have to pull                      it gets 0, and the other alone makes up for both
+            both would                                  either alone is asked, and neither gets less than 0
         """
-        together = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
-        if together.min() >= 0:
-            return together
+        both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
+        if both.min() >= 0:
+            return both
+        # What the other has pushed until now, it no longer does: that is lacking, too.
         alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
-        other_pulls = together[::-1] < 0
-        return np.maximum(np.where(other_pulls, alone, together), 0.0)
+        other_would_pull = both[::-1] < 0
+        return np.maximum(np.where(other_would_pull, alone, both), 0.0)
 
 
 def _counting(contacts: Contacts, first: Array, second: Array, coupling: Array) -> Bools:

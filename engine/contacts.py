@@ -73,7 +73,7 @@ class NarrowPhase:
             world=world,
             shape=pair,
             body=body,
-            friction=_mix(self._params.friction[body], _geometric_mean, _DEFAULT_FRICTION),
+            friction=_mix(self._params.friction[body], lambda a, b: np.sqrt(a * b), _DEFAULT_FRICTION),
             restitution=_mix(self._params.restitution[body], np.maximum, 0.0),
             impulse=np.zeros((len(rows), 3)),
             approach=np.zeros((len(rows), 3)),
@@ -118,20 +118,20 @@ def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, same: Bools) -> Non
 
     Two boxes that lie face to face make the same points by one's face or the other's, whichever happens to be a little
     less deep. If their impulses were lost with it, a heap would start afresh here and there in every step, and never
-    come to rest. `same` (n, 2) are points that kept theirs.
+    come to rest. `same` (n, 2) are the points that kept theirs.
 
-        last   q0 ●            ● q1      a new point p and an old one q match if each is the other's nearest, and near;
-        now      p1 ○        ○ p0        here p0 takes over the impulse of q1, and p1 that of q0
+        gone   q0 ●            ● q1      a new point p takes over the impulse of q where each is the other's nearest,
+        new      p1 ○        ○ p0        and near: here p0 that of q1, and p1 that of q0
     """
     alike = dot(last.normal, contacts.normal[rows]) > _ALIKE
-    new, gone = contacts.valid[rows] & ~same, last.valid & ~same & alike[:, None]
+    is_new, is_gone = contacts.valid[rows] & ~same, last.valid & ~same & alike[:, None]
     away = length(contacts.points[rows][:, :, None] - last.points[:, None])  # (n, p, q)
-    away[~(new[:, :, None] & gone[:, None])] = np.inf
-    nearest = np.minimum(away.min(axis=1, keepdims=True), away.min(axis=2, keepdims=True))
-    match = (away == nearest) & (away < _NEAR)
+    away[~(is_new[:, :, None] & is_gone[:, None])] = np.inf
+    nearest_new, nearest_gone = away.min(axis=1, keepdims=True), away.min(axis=2, keepdims=True)
+    match = (away == nearest_new) & (away == nearest_gone) & (away < _NEAR)
     contacts.impulse[rows, :2] += (match * last.impulse[:, None, :2]).sum(axis=2)
-    pushed = alike & (same | match.any(axis=2)).any(axis=1)  # friction stays if any push does
-    contacts.impulse[rows, 2] = last.impulse[:, 2] * pushed
+    keeps_a_push = alike & (same | match.any(axis=2)).any(axis=1)
+    contacts.impulse[rows, 2] = last.impulse[:, 2] * keeps_a_push  # friction goes with the pushes
 
 
 def _colours(slots: Ints, free: Bools) -> Ints:
@@ -158,7 +158,3 @@ def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float
     either = np.where(np.isnan(a), b, a)
     both = ~np.isnan(a) & ~np.isnan(b)
     return np.where(both, combine(a, b), np.where(np.isnan(either), default, either))
-
-
-def _geometric_mean(a: Array, b: Array) -> Array:
-    return np.sqrt(a * b)

@@ -13,16 +13,13 @@ velocity, a force, a body taken out, a floor moved away and another gravity wake
 
 from __future__ import annotations
 
-from typing import Final, TypeVar
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.contacts import Contacts
 from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints
-
-T = TypeVar("T", bound=np.generic)
 
 STILL: Final = 0.01  # m/s and rad/s up to which a body is still
 DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile
@@ -39,25 +36,15 @@ class Rest:
 
     """
 
-    def __init__(self, state: BodyState, gravity: Array, allowed: bool) -> None:
-        self._allowed = allowed
+    def __init__(self, state: BodyState, params: BodyParams, gravity: Array, allowed: bool) -> None:
+        self._dynamic, self._allowed = params.dynamic, allowed
+        self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
         self.awake: Bools | None = None
         self._place: Array = state.pose.copy()  # where each body was when it came to be still
         self._pace: Array = state.velocity.copy()  # and its velocity then
         self._still: Ints = np.zeros(state.active.shape, dtype=np.intp)  # for how many steps it has been
         self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
-
-    def know(self, params: BodyParams) -> None:
-        """Go by these parameters from now on. Bodies that were added are restless; all others go on as they were."""
-        self._dynamic = params.dynamic
-        self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
-        more = len(params.group) - self.asleep.shape[1]
-        self.asleep, self._still = _wider(self.asleep, more), _wider(self._still, more)
-        self._place, self._pace = _wider(self._place, more), _wider(self._pace, more)
-        pose, velocity, active, gravity = self._seen
-        self._seen = _wider(pose, more), _wider(velocity, more), _wider(active, more), gravity
-        self._note_awake()
 
     def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
@@ -123,16 +110,7 @@ class Rest:
             supported = _linked(~restless & ~self._dynamic, contacts, self._dynamic)
             disturbed = _linked(restless, contacts, self._dynamic)
             self.asleep = supported & ~disturbed & self._dynamic
-        self._note_awake()
-
-    def _note_awake(self) -> None:
-        restless = self._still < STEPS
         self.awake = ~self.asleep & (self._dynamic | restless) if self.asleep.any() else None
-
-
-def _wider(table: NDArray[T], more: int) -> NDArray[T]:
-    """Return a table (batch, bodies, ...) with zeros for more bodies: unlike anything that is still."""
-    return np.pad(table, [(0, more if axis == 1 else 0) for axis in range(table.ndim)])
 
 
 def _linked(start: Bools, contacts: Contacts, dynamic: Bools) -> Bools:

@@ -92,32 +92,29 @@ class Solver:
 def _keep_angular_momentum(state: BodyState, contacts: Contacts, inverse_mass: Array, push: Array) -> None:
     """Take back the angular momentum that pairs of free bodies gained as they were pushed apart across their motion.
 
-    A `push` p (m,), in kg·m along the normal n, has added p·(n × v), with v the velocity of B as seen from A. About the
-    centre of mass of a pair, with r from there, and sums over x, y and turn of both bodies:
-
-        mass    = (m, m, I)                         L = Σ mass · turning · velocity    angular momentum
-        turning = (-ry, rx, 1)   at 1 rad/s         J = Σ mass · turning²              inertia, as one rigid body
-        own     = velocity - that of the centre - L / J · turning                      what else moves: without any L
-
-    The turn L / J is brought back to what it was, like that of a skater who spreads the arms: the bodies come no nearer
-    by it and do not slide on each other. Where that adds energy, ½·L² / J, `own` is slowed to make up for it.
+    A `push` p (m,), in kg·m along the normal n, has added p·(n × v), with v the velocity of B as seen from A. Each pair
+    is taken as one rigid body, which turns about its centre of mass like a skater who spreads the arms: by changing
+    that turn alone, its bodies come no nearer and do not slide on each other. Where that adds energy, all else that
+    moves in the pair is slowed to make up for it.
     """
     rows = np.flatnonzero((inverse_mass[:, :, 0] > 0).all(axis=1) & (push > 0))
     if not len(rows):
         return
     places = contacts.world[rows, None], contacts.body[rows]
-    mass, pose, velocity = 1.0 / inverse_mass[rows], state.pose[places], state.velocity[places]  # (pairs, 2, 3)
+    # Of both bodies of each pair, in x, y and turn, (pairs, 2, 3):
+    mass, pose, velocity = 1.0 / inverse_mass[rows], state.pose[places], state.velocity[places]
     share = mass / mass.sum(axis=1, keepdims=True)
-    turning = np.ones_like(velocity)
+    turning = np.ones_like(velocity)  # their velocities if the pair turned at 1 rad/s: (-ry, rx, 1), r from its centre
     turning[..., :2] = -right_of((pose - (share * pose).sum(axis=1, keepdims=True))[..., :2])
+    # Of each pair: its inertia, and its angular momentum as it is and as it was before the push.
     inertia, momentum = _total(mass * turning**2), _total(mass * turning * velocity)
     before = momentum - (push[rows] * cross(contacts.normal[rows], velocity[:, 1] - velocity[:, 0]))[:, None, None]
-    own = velocity - momentum / inertia * turning
-    own[..., :2] -= (share * velocity).sum(axis=1, keepdims=True)[..., :2]
-    energy, gain = _total(mass * own**2), (before**2 - momentum**2) / inertia  # both doubled
-    lost = np.divide(gain, energy, out=np.zeros_like(gain), where=energy > 0)
+    else_moving = velocity - momentum / inertia * turning
+    else_moving[..., :2] -= (share * velocity).sum(axis=1, keepdims=True)[..., :2]
+    gain, left = (before**2 - momentum**2) / inertia, _total(mass * else_moving**2)  # energies, both doubled
+    lost = np.divide(gain, left, out=np.zeros_like(gain), where=left > 0)
     slower = np.sqrt(np.clip(1.0 - lost, 0.0, 1.0))
-    np.add.at(state.velocity, places, (before - momentum) / inertia * turning + (slower - 1.0) * own)
+    np.add.at(state.velocity, places, (before - momentum) / inertia * turning + (slower - 1.0) * else_moving)
 
 
 def _total(parts: Array) -> Array:

@@ -60,10 +60,9 @@ class BodyState:
 class BodyParams:
     """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch.
 
-    To change a table, assign another `BodyParams` to `World.params`, made by `dataclasses.replace`. The next step goes
-    by it, and bodies whose rows differ begin it awake and without the last one's impulses. Tables can't be written
-    into, except a `quadratic_drag` of shape (batch, bodies, 3), which gives each world an air of its own. Raises
-    ValueError for values without physical sense.
+    To change a table, assign another `BodyParams` to `World.params`, made by `dataclasses.replace`. Tables can't be
+    written into, except a `quadratic_drag` of shape (batch, bodies, 3), which gives each world an air of its own.
+    Raises ValueError for values without physical sense.
     """
 
     inverse_mass: Array  # (bodies, 3): 1/kg, 1/kg, 1/(kg·m²); 0 for a body that no force moves
@@ -101,15 +100,3 @@ class BodyParams:
     def with_body(self, row: BodyParams) -> BodyParams:
         """Return these tables with the row of another body."""
         return BodyParams(**{name: np.concatenate([table, vars(row)[name]]) for name, table in vars(self).items()})
-
-    def changed(self, before: BodyParams) -> Bools:
-        """Return which bodies have other rows than `before`, or had none, (bodies,)."""
-        count = len(before.group)
-        changed = np.arange(len(self.group)) >= count
-        for name, then in vars(before).items():
-            now = vars(self)[name]
-            now = now[:count] if now.ndim == 1 else now[..., :count, :]
-            differs = (now != then) & ~(np.isnan(now) & np.isnan(then))
-            rows = differs if now.ndim == 1 else differs.any(axis=-1)
-            changed[:count] |= rows if rows.ndim == 1 else rows.any(axis=0)
-        return changed

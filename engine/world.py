@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -43,8 +42,8 @@ class World:
         iterations: int = 10,
         sleeping: bool = True,
     ) -> None:
-        if batch < 1:
-            raise ValueError(f"a world needs a batch of at least 1, not {batch}")
+        if batch < 1 or iterations < 1:
+            raise ValueError(f"a world needs a batch and iterations of at least 1, not {batch} and {iterations}")
         self.batch = batch
         self.sleeping = sleeping
         self.bodies: list[Body] = []
@@ -56,12 +55,12 @@ class World:
         self._remembered: Contacts | None = None  # those of `contacts` whose impulses begin the next step
         self.gravity = gravity
         self.iterations = iterations
-        self._rest = Rest(self.state, self.gravity, sleeping)
         self._prepared: BodyParams | None = None  # for which all below is made
         self._shape_table: ShapeTable
         self._broad_phase: BroadPhase
         self._narrow_phase: NarrowPhase
         self._movers: Span | None
+        self._rest: Rest
 
     @property
     def gravity(self) -> Array:
@@ -83,26 +82,15 @@ class World:
         self._gravity: Array = gravity
 
     @property
-    def iterations(self) -> int:
-        """Iterations of the solver, at least 1."""
-        return self._iterations
-
-    @iterations.setter
-    def iterations(self, value: int) -> None:
-        if not isinstance(value, int | np.integer) or value < 1:
-            raise ValueError(f"the solver needs a whole number of iterations, at least 1, not {value}")
-        self._iterations = int(value)
-
-    @property
     def params(self) -> BodyParams:
-        """Mass, drag and surface of the bodies; assign others to change them."""
+        """Mass, drag and surface of the bodies; assign others to change them: all wake, and begin without impulses."""
         return self._params
 
     @params.setter
     def params(self, params: BodyParams) -> None:
         if len(params.group) != len(self.bodies) or params.quadratic_drag.shape[:-2] not in ((), (self.batch,)):
             raise ValueError(f"parameters must be those of {len(self.bodies)} bodies in {self.batch} worlds")
-        self._params = params
+        self._params, self._remembered = params, None
 
     def add(
         self,
@@ -209,16 +197,12 @@ class World:
         """Bring up to date what is made of bodies and their parameters, if any has been added or replaced."""
         if self._prepared is self.params:
             return
-        params, before = self.params, self._prepared or BodyParams.empty()
-        self._prepared, self._movers = params, None
+        params = self._prepared = self.params
+        self._movers = None
         self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic)
         self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN)
         self._narrow_phase = NarrowPhase(params, self._shape_table)
-        self._rest.know(params)
-        changed = params.changed(before)
-        if changed[: len(before.group)].any():
-            self._forget(np.broadcast_to(changed, (self.batch, len(changed))))
-            self._rest.wake(np.broadcast_to(changed, (self.batch, len(changed))), self.contacts)
+        self._rest = Rest(self.state, params, self.gravity, self.sleeping)
 
     @property
     def movers(self) -> Span:
@@ -273,28 +257,21 @@ class World:
     def memory(self) -> dict[str, Any]:
         """Return what the next step takes over from the last one, arrays that no step changes; `recall` puts it back.
 
-        Together with `state`, `gravity`, `params` and the settings of the constructor, it is all that a world's future
-        depends on.
+        Together with `state`, `params` and the settings of the constructor, it is all that the future depends on of
+        worlds in which nothing sleeps.
         """
-        self._prepare()
-        contacts = vars(self._remembered) if self._remembered else {}
-        rest = {"rest": copy.deepcopy(vars(self._rest))} if self.sleeping else {}
-        return {"gravity": self.gravity, "contacts": dict(contacts), **rest}
+        return {"gravity": self.gravity, "contacts": dict(vars(self._remembered)) if self._remembered else {}}
 
     def recall(self, memory: Mapping[str, Any]) -> None:
         """Put back what a call of `memory` returned."""
-        self._prepare()
         contacts = memory["contacts"]
         self.contacts = self._remembered = Contacts(**contacts) if contacts else None
-        vars(self._rest).update(copy.deepcopy(memory.get("rest", {})))
         self.forget_boxes()
 
 
 def memory_of_worlds(memory: Mapping[str, Any], worlds: Ints) -> dict[str, Any]:
-    """Return the memory of some worlds (m,), each as often as it is named; of worlds without sleep."""
+    """Return the memory of some worlds (m,), each as often as it is named."""
     contacts, gravity = memory["contacts"], memory["gravity"]
-    if "rest" in memory:
-        raise ValueError("worlds in which bodies sleep are remembered as a whole")
     if contacts:
         world, row = np.nonzero(worlds[:, None] == contacts["world"])
         contacts = {name: table[row] for name, table in contacts.items()} | {"world": world}

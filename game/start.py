@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from ai.copilot.futures import FlownAhead
     from game.core.scene import Route
+    from game.flight.futures import FuturesProcess
 
 _HINTS: Final[dict[str, str]] = {
     "PYGAME_HIDE_SUPPORT_PROMPT": "1",
@@ -74,7 +74,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
 
 
 @cache
-def _ahead() -> FlownAhead:
+def _ahead() -> FuturesProcess:
     from game.flight.futures import FuturesProcess
 
     return FuturesProcess()

@@ -13,7 +13,8 @@ OPENING = {
 }  # fmt: skip
 STARTING = {
     "eval", "exec", "__import__", "import_module", "pickle.load", "pickle.loads", "gymnasium.make",
-    "self._gymnasium.make", "run_path", "run_module", "os.system", "os.popen", "Popen", "subprocess.run",
+    "self._gymnasium.make", "spec.loader.exec_module", "run_path", "run_module", "os.system", "os.popen", "Popen",
+    "subprocess.run",
 }  # fmt: skip
 # Calls that a module makes all the same, and why no file of a stranger's is behind them.
 OPENED = {
@@ -34,7 +35,7 @@ OPENED = {
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }
 STARTED = {
-    "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
+    "ai.pilots.child": ({"spec.loader.exec_module"}, "the file that the player has chosen, in a process of its own"),
     "game.scenes.networks.files": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),

@@ -132,7 +132,7 @@ def test_the_stack_comes_to_rest(capsys: pytest.CaptureFixture[str]):
 
 
 def test_the_pay_that_goes_wrong_is_a_pay():
-    pay, _ = load(PAY, "pay.py", (EXAMPLES / "pay_that_goes_wrong.py").read_text())
+    pay, _ = load(PAY, str(EXAMPLES / "pay_that_goes_wrong.py"))
     before = Situation(*np.zeros((9, 2), int))
     after = replace(before, steps=np.array([4, 4]), outcome=np.array([FLYING, CRASHED]))
     assert pay((before, after)) == pytest.approx([4 / 60, 4 / 60 - 10])

@@ -107,7 +107,7 @@ def test_the_game_opens_nothing_that_is_left_out(files, tmp_path: Path):
 def test_every_module_that_is_found_by_its_name_is_packed():
     modules = set(recipe.modules())
     named = {f"game.scenes.{place.partition('.')[0]}" for place in ROUTES.values()}
-    named |= {f"game.scenes.learn.{entry.place.partition('.')[0]}" for entry in PATH.values()}
+    named |= {f"game.scenes.learn.{place.partition('.')[0]}" for place in PATH.values()}
     named |= {"game.cli", "ai.cli.train", "ai.cli.evaluate", "tranquility.__main__"}
     assert named <= modules
     assert not modules & set(recipe.excluded())

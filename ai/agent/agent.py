@@ -310,5 +310,5 @@ class DeepQAgent:
 
     @classmethod
     def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> Self:
-        """Read what `save` wrote; raises ModelFormatError, which names everything that is wrong."""
+        """Read what `save` wrote; raises ModelFormatError, which names what is wrong."""
         return read_agent(folder, partial(cls, rng=rng))

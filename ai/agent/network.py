@@ -16,7 +16,6 @@ from ai.nn import (
 )
 from ai.nn.activations import ACTIVATIONS
 from ai.nn.costs import COSTS
-from ai.nn.layer import MOST_LAYERS
 from ai.nn.optimizers import Optimizer
 
 
@@ -28,7 +27,7 @@ def build_network(num_features: int, num_actions: int, config: AgentConfig, rng:
     """
     layers: list[Layer] = []
     inputs = num_features
-    for units in config.hidden[:MOST_LAYERS]:  # so many are too many already
+    for units in config.hidden:
         layers.append(FullyConnectedLayer(inputs, units))
         if config.layer_normalisation:
             layers.append(LayerNormalisation(units))

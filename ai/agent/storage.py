@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from ai.agent.config import AgentConfig
-from ai.environment import Floats
 from ai.files import (
     NETWORK,
+    OF_A_RUN,
     FolderKind,
     atomic_folder,
     check_header,
@@ -27,9 +27,9 @@ from ai.files import (
     read_json,
     recover_folder,
 )
-from ai.nn import ModelFormatError, NeuralNetwork, Optimizer
-from ai.nn.layer import WIDEST
-from ai.nn.storage import noted
+from ai.nn import NeuralNetwork
+from ai.nn.layer import MOST_VALUES
+from ai.nn.storage import reading
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
@@ -42,8 +42,7 @@ AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
 _ALONE: Final = FolderKind(FORMAT, (AGENT_FILE, OPTIMIZER_FILE, *NETWORK.within("online"), *NETWORK.within("target")))
-_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
-KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *_OF_A_RUN, *_ALONE.within(LAST)))
+KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *OF_A_RUN, *_ALONE.within(LAST)))
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
@@ -76,23 +75,19 @@ def write_agent(agent: DeepQAgent, folder: Path) -> None:
 def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -> A:
     """Read what `write_agent` wrote; `make` makes the agent of its numbers of features and actions and its settings.
 
-    Raises ModelFormatError, which names everything that is wrong.
+    Raises ModelFormatError, which names what is wrong.
     """
     folder = Path(folder)
     recover_folder(folder)
-    problems: list[str] = []
-    with noted(problems, AGENT_FILE):
+    with reading(folder, AGENT_FILE):
         agent = _read_description(folder, make)
-    if problems:
-        raise ModelFormatError(folder, problems)
     for name in ("online", "target"):
-        with noted(problems, name):
+        with reading(folder, name):
             setattr(agent, name, _read_network(inside(folder, name), getattr(agent, name)))
-    with noted(problems, OPTIMIZER_FILE):
-        state = _read_state(inside(folder, OPTIMIZER_FILE), agent.optimizer, agent.online.values)
-        agent.optimizer.load_state(state, agent.online.values)
-    if problems:
-        raise ModelFormatError(folder, problems)
+    with reading(folder, OPTIMIZER_FILE):
+        values = agent.online.values
+        most = (len(agent.optimizer.remembers) + 1) * values.nbytes + _SLACK
+        agent.optimizer.load_state(read_arrays(inside(folder, OPTIMIZER_FILE), most), values)
     agent.folder = folder
     return agent
 
@@ -109,7 +104,7 @@ def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) 
     if missing := AgentConfig.names() - settings.keys():
         raise ValueError(f"settings are missing: {', '.join(sorted(missing))}")
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
-    features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
+    features, actions = (count_of(described[name], 1, MOST_VALUES) for name in ("features", "actions"))
     agent = make(features, actions, AgentConfig.from_json(settings))
     agent.run_settings = run_settings
     agent.decisions = count_of(described["decisions"])
@@ -130,14 +125,3 @@ def _read_network(folder: Path, like: NeuralNetwork) -> NeuralNetwork:
 def _sizes(network: NeuralNetwork) -> list[Any]:
     """Return the dtype, layer types and shapes, which two networks must share to take each other's parameters."""
     return [network.dtype, *((type(layer), dict(layer.shapes)) for layer in network.layers)]
-
-
-def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, Any]:
-    """Read the arrays of an optimizer of the parameters `values`; raises OSError, or ValueError for any others."""
-    shapes = {"steps": (), **dict.fromkeys(optimizer.remembers, values.shape)}
-
-    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-        if shape != shapes.get(name) or dtype.kind not in "iuf" or dtype.itemsize > 8:
-            raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
-
-    return read_arrays(path, len(shapes) * values.size * 8 + _SLACK, expect)

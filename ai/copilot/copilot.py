@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Final, Protocol
@@ -118,8 +117,6 @@ class CoPilot:
         self.lookahead = Lookahead(agent, route)  # type: ignore[arg-type]  # futures ask for a pilot; values do not
         self.guardians: list[Guardian] = []
         self._rules: tuple[object, ...] = ()  # of the environment that the plans are for
-        self._moment: tuple[object, ...] = ()  # of the last decision, and what was remembered before it
-        self._before: tuple[Doubles, list[Guardian]] | None = None
 
     @property
     def assist(self) -> float:
@@ -134,7 +131,6 @@ class CoPilot:
 
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
-        self._moment = ()
         self._intent.forget(mask)
         for slot, guardian in enumerate(self.guardians):
             if mask is None or mask[slot]:
@@ -142,7 +138,7 @@ class CoPilot:
 
     def hold_plans_of(self, other: CoPilot) -> None:
         """Go on with the plans of another: one that lands does so whichever network it was found with."""
-        self.guardians, self._rules, self._moment = other.guardians, other._rules, ()
+        self.guardians, self._rules = other.guardians, other._rules
 
     # Decisions
 
@@ -181,12 +177,10 @@ class CoPilot:
 
         Here, what is corrected keeps the pilot's share of thrust, unless it is to be `whole`, so fly
         `SharedDecision.shares`. What is `known` (n) was flown beforehand: then no future is flown now, and what is
-        missing counts as lost. Asked again before `env` has flown on, it decides as if it had not been asked before.
+        missing counts as lost.
         """
         observation, pilot, pushed = _checked(observation, pilot_action, shares)
         slots, pads, _ = observation.shape
-        if env is not None:
-            self._rewind(env)
         seen = self._seen(observation, surroundings)
         values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
@@ -230,7 +224,7 @@ class CoPilot:
     # The guardian
 
     def futures(self, env: LanderEnv) -> Futures:
-        """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
+        """Return what comes of each action if the network then flies on, in every slot."""
         return Futures(self.foresee(env, [None] * env.num_envs))
 
     def foresee(self, env: LanderEnv, asked: Sequence[Push | None], *, whole: bool = False) -> list[Known]:
@@ -297,36 +291,13 @@ class CoPilot:
         held = np.array([choice.held for choice in choices])
         return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(known), held
 
-    def _rewind(self, env: LanderEnv) -> None:
-        """Remember what was known before the decision at this moment, or go back to it where that was made already."""
-        self._void(env)
-        moment = env, *Here.all(env)
-        if moment != self._moment or self._before is None:
-            self._moment, self._before = moment, (self._intent.chances, [copy(each) for each in self.guardians])
-            return
-        self._intent.chances, guardians = self._before
-        for guardian, before in zip(self.guardians, guardians, strict=True):
-            vars(guardian).update(vars(before))
-
     def _void(self, env: LanderEnv) -> None:
-        """Drop the plans of slots whose rules have changed since, and all where the ground or their number has."""
-        rules = env.params, env.limits, env.conditions, env.num_envs, env.ground
-        if len(rules) != len(self._rules) or any(a is not b for a, b in zip(rules, self._rules, strict=True)):
-            changed = np.ones(env.num_envs, dtype=bool)
-            if self._rules[3:] and self._rules[3] == env.num_envs and self._rules[4] is env.ground:
-                changed = (_numbers(self._rules[:3], env.num_envs) != _numbers(rules[:3], env.num_envs)).any(axis=0)
-            for slot, guardian in enumerate(self.guardians):
-                if slot >= env.num_envs or changed[slot]:
-                    guardian.plan = None
+        """Drop all plans where the rules, the ground or the number of landers are others than before."""
+        rules = env.params, env.limits, env.conditions, env.ground, env.num_envs
+        if self._rules and any(a is not b for a, b in zip(rules, self._rules, strict=True)):
+            self.forget()
         self._rules = rules
         self.guardians += [Guardian() for _ in range(env.num_envs - len(self.guardians))]
-
-
-def _numbers(rules: Sequence[Any], slots: int) -> Doubles:
-    """Return the numbers of rules that each slot flies by, (k, slots): they may be one for all, or one for each."""
-    values = [getattr(rule, each.name) for rule in rules for each in fields(rule)]
-    numbers = [part for value in values for part in (value if isinstance(value, tuple) else (value,))]
-    return np.stack([np.broadcast_to(number, slots) for number in numbers])
 
 
 def _checked(observation: Floats, pilot: Any, shares: Doubles | None) -> tuple[Floats, Ints, Doubles]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -28,8 +28,8 @@ SPARE: Final = 1.5  # seconds before time is out, from which on a landing does n
 RESTLESS: Final = 4.0  # seconds on the ground after which a future that has not landed counts as one that does not
 _MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
 _STUCK: Final = round(RESTLESS / DT) // DECISION_STEPS
-_BATCH: Final = 4096  # futures at most in one batch: more take no less time each
-
+_STANDS: Final = 2  # steps still on both feet, after which a craft is taken to land if nothing is pushed
+_THERE: Final = 0.3  # metres and radians within which it is then where it stood
 
 Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future, before the network has the stick
 
@@ -38,12 +38,16 @@ Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future,
 class Plan:
     """Future that was seen to land: what to push, decision by decision, and where that leads.
 
+    It is flown until the craft stands. The rest of the half second for which it must stand, nothing is pushed; to fly
+    that ahead as well, with contacts in every step, would take half as long as all before.
+
     Attributes:
         begin: physics steps flown when it begins.
         gravity: of its world, m/s².
         target: number of the pad that the network flew to in it.
         shares: what is pushed in its k decisions, as shares of thrust, (k, 2).
-        states: x, y, angle, and their changes each second, before every decision and at its end, (k + 1, 6).
+        states: x, y, angle, and their changes each second, before every decision that was flown and after the last,
+            (k + 1, 6), or fewer where it stands.
 
     """
 
@@ -61,11 +65,14 @@ class Plan:
     def push(self, here: Here) -> Push | None:
         """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
         number, between = divmod(here.steps - self.begin, DECISION_STEPS)
-        if between or not 0 <= number < len(self.shares) or here.gravity != self.gravity:
+        if between or number < 0 or here.gravity != self.gravity:
             return None
-        if tuple(self.states[number].tolist()) != here.state:
-            return None
-        return Push.of(*self.shares[number].tolist())
+        flown = len(self.states) - 1
+        if number < flown:
+            on_it = tuple(self.states[number].tolist()) == here.state
+            return Push.of(*self.shares[number].tolist()) if on_it else None
+        stands = flown < len(self.shares) and np.abs(self.states[-1, :3] - here.state[:3]).max() < _THERE
+        return Push() if stands else None
 
 
 class Here(NamedTuple):
@@ -123,37 +130,12 @@ class Futures:
     @property
     def landed(self) -> Bools:
         """Whether the network lands after one decision of an action, (n, 6)."""
-        return np.array([[plan is not None for plan in row] for row in self.plans])
+        return np.array([[key in known and known[key].plan is not None for key in KEYS] for known in self.known])
 
     @property
     def lasts(self) -> Bools:
         """Whether it lands after as many decisions of it as the dial asks for, too, (n, 6)."""
         return np.array([[key in known and known[key].passes for key in KEYS] for known in self.known])
-
-    @property
-    def plans(self) -> list[list[Plan | None]]:
-        """The plan of each landing, None for the others, n lists of 6."""
-        return [[known[key].plan if key in known else None for key in KEYS] for known in self.known]
-
-
-class FlownAhead(Protocol):
-    """Protocol of what flies the futures of one lander's next decision, while the present one is flown."""
-
-    problem: str  # why there are none; empty while there are
-
-    def ask(
-        self, moment: Moment, before: Opening, asked: Push, decisions: int, pilot: Pilot, route: Route | None
-    ) -> None:
-        """Ask for the futures of a moment, after what is pushed `before`, and forget older ones.
-
-        `asked` is what the stick asks for now, and `decisions`, `pilot` and `route` are those of `Lookahead`.
-        """
-
-    def hint(self, asked: Push) -> None:
-        """Say what the stick asks for now; call it in every step between two requests, so that answers are fetched."""
-
-    def known(self) -> Known:
-        """Return what is known by now of the moment asked for; never waits."""
 
 
 Flying = Generator[None, None, T]  # yields after each decision, and returns what comes of it
@@ -213,11 +195,9 @@ class Lookahead:
         plans: list[Plan | None] = [None] * len(asked)
         for tried in slice(1), slice(1, None):  # most land where they were meant to; the other pads are for the rest
             rows = [(index, row) for index, (row, _) in enumerate(asked) if plans[index] is None]
-            left = [(index, pad) for index, row in rows for pad in pads[row][tried]]
-            for first in range(0, len(left), _BATCH):
-                batch = left[first : first + _BATCH]
-                found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in batch])
-                for (index, _), (plan, landed) in zip(batch, found, strict=True):
+            if left := [(index, pad) for index, row in rows for pad in pads[row][tried]]:
+                found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in left])
+                for (index, _), (plan, landed) in zip(left, found, strict=True):
                     plans[index] = plans[index] or (plan if landed else None)
         return plans
 
@@ -233,7 +213,8 @@ class Lookahead:
         start = moment.take(np.array([row for row, _, _ in asked]))
         start.target[:] = [pad for _, _, pad in asked]
         env = self._begin(start)
-        flies, landed = np.ones(len(asked), dtype=bool), np.zeros(len(asked), dtype=bool)
+        flies, (landed, stands) = np.ones(len(asked), dtype=bool), np.zeros((2, len(asked)), dtype=bool)
+        begun = np.array([len(opening) for _, opening, _ in asked])
         flown, grounded = np.zeros((2, len(asked)), dtype=np.intp)  # decisions, in all and at last on the ground
         shares: list[Doubles] = []
         states = [_states(env)]
@@ -253,12 +234,17 @@ class Lookahead:
             grounded = np.where(env.contacts.any(axis=1), grounded + 1, 0)
             landed |= flies & (env.outcome == Outcome.LANDED) & ~late
             flies &= (env.outcome == Outcome.FLYING) & ~late & (grounded < _STUCK) & (len(shares) < _MOST)
+            if not env.conditions.moves:
+                stands |= flies & (env.still_steps >= _STANDS) & env.ground.ends[env.touched] & (flown >= begun)
+                flies &= ~stands
         flight = np.array(shares), np.array(states)
-        found = []
+        found, rest = [], -(-(int(np.max(env.limits.rest_steps)) - _STANDS) // DECISION_STEPS)
         for lander, (row, _, pad) in enumerate(asked):
             way = [part[: flown[lander] + more, lander].copy() for more, part in enumerate(flight)]
+            if stands[lander]:
+                way[0] = np.concatenate([way[0], np.zeros((rest, 2))])
             plan = Plan(int(moment.steps[row]), moment.fall(row), pad, *way)
-            found.append((plan, bool(landed[lander])))
+            found.append((plan, bool(landed[lander] or stands[lander])))
         return found
 
     def _begin(self, moment: Moment) -> LanderEnv:

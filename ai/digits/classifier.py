@@ -10,17 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.digits.preprocessing import SIDE
-from ai.files import CONFIG, FolderKind, atomic_folder, check_header, inside, problem_in, read_json, recover_folder
+from ai.files import CONFIG, OF_A_RUN, FolderKind, atomic_folder, check_header, inside, read_json, recover_folder
 from ai.files import NETWORK as NETWORK_KIND
-from ai.nn import ModelFormatError, NeuralNetwork
-from ai.nn.costs import softmax
+from ai.nn import NeuralNetwork, softmax
+from ai.nn.storage import reading
 
 DIGITS_FILE: Final = CONFIG  # of a classifier's folder; its network is in a folder within
 NETWORK: Final = "network"
 FORMAT: Final = "tranquility digits"
 VERSION: Final = 1
-_OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz"
-KIND: Final = FolderKind(FORMAT, (CONFIG, *_OF_A_RUN, *NETWORK_KIND.within(NETWORK)))
+KIND: Final = FolderKind(FORMAT, (CONFIG, *OF_A_RUN, *NETWORK_KIND.within(NETWORK)))
 DIGITS: Final = 10
 _BATCH: Final = 250  # images that a large network reads at a time: more only need more memory
 
@@ -85,16 +84,10 @@ class DigitClassifier:
         """Read what `save` wrote; raises ModelFormatError, which names what is wrong."""
         folder = Path(folder)
         read_description(folder)
-        try:
-            network = NeuralNetwork.load(inside(folder, NETWORK))
-        except OSError as error:
-            raise ModelFormatError(folder, [f"{NETWORK}: {error.strerror or error}"]) from error
-        try:
-            classifier = cls(network)
+        with reading(folder, NETWORK):
+            classifier = cls(NeuralNetwork.load(inside(folder, NETWORK)))
             if classifier.predict(np.zeros((1, SIDE, SIDE))).shape != (1, DIGITS):
                 raise ValueError(f"the network has not {DIGITS} outputs")
-        except ValueError as error:
-            raise ModelFormatError(folder, [str(error)]) from error
         return classifier
 
 
@@ -102,7 +95,5 @@ def read_description(folder: str | Path) -> dict[str, Any]:
     """Return what a classifier's folder says of itself; raises ModelFormatError if it is none."""
     folder = Path(folder)
     recover_folder(folder)
-    try:
+    with reading(folder, DIGITS_FILE):
         return check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, VERSION)
-    except (OSError, ValueError) as error:
-        raise ModelFormatError(folder, [f"{DIGITS_FILE}: {problem_in(error)}"]) from error

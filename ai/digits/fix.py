@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final
@@ -13,8 +14,10 @@ from ai.digits.augmentation import Strength, augment
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
 from ai.digits.preprocessing import Image
-from ai.digits.training import accuracy
-from ai.nn import Adam, Array
+from ai.digits.training import accuracy, read_summary
+from ai.files import CONFIG
+from ai.nn import Adam
+from ai.run import TRAINING_FILE
 
 STEPS: Final = 60  # at the most
 ENOUGH: Final = 0.9  # how probable the right digit shall be
@@ -69,7 +72,7 @@ def steps_to_fix(
         copies = np.repeat(image[None], COPIES, axis=0)
         copies[1:] = augment(copies[1:], rng, Strength().times(0.5))
         batch = np.concatenate([copies, images[chosen]])
-        targets = _one_hot(np.concatenate([np.full(COPIES, digit), labels[chosen]]))
+        targets = np.eye(DIGITS, dtype=np.float32)[np.concatenate([np.full(COPIES, digit), labels[chosen]])]
         network.train_batch(classifier.shaped(batch), targets, optimizer)
     yield FixStep(STEPS, _probability(classifier, image, digit))
 
@@ -80,19 +83,19 @@ def fix(
     digit: int,
     keep: Path,
     *,
-    before: float | None = None,
     train: tuple[Images, Labels] | None = None,
     test: tuple[Images, Labels] | None = None,
 ) -> Generator[list[FixStep | Fixed], Any, None]:
     """Fine-tune the network in a folder on a drawing, and write the fixed one to `keep`; for a worker.
 
-    `before` is its accuracy on the test images where that is known. Images are MNIST's, unless others are given.
+    Images are MNIST's, unless others are given.
     Raises what `steps_to_fix`, `DigitClassifier.load` and `load_part` raise.
     """
     classifier = DigitClassifier.load(folder)
     first = _probability(classifier, image, digit)
     yield [FixStep(0, first)]
     tested = test or load_part(TEST)
+    before = _known_accuracy(folder)
     if before is None:
         before = accuracy(classifier, *tested)
     taken = 0
@@ -112,11 +115,14 @@ def fix(
     yield [Fixed(digit, probability, (before, after), taken, kept, problem)]
 
 
+def _known_accuracy(folder: Path) -> float | None:
+    """Return the test accuracy stored in a network's folder, if there is one."""
+    for file in (CONFIG, TRAINING_FILE):  # of a fix, and of a training
+        with suppress(OSError, ValueError):
+            if (test := read_summary(folder, file).test) is not None:
+                return test
+    return None
+
+
 def _probability(classifier: DigitClassifier, image: Image, digit: int) -> float:
     return float(classifier.predict(image)[0, digit])
-
-
-def _one_hot(labels: Any) -> Array:
-    targets: Array = np.zeros((len(labels), DIGITS), np.float32)
-    targets[np.arange(len(labels)), labels] = 1
-    return targets

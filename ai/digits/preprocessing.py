@@ -56,19 +56,6 @@ def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
     return _placed(ink, CELLS)
 
 
-def stroke_stages(ink: Image, canvas: npt.ArrayLike) -> Stages:
-    """Return strokes that were `redrawn` at each stage, and the canvas that they were drawn on with some pen.
-
-    What the network reads of them is what `preprocess_strokes` returns: they are not thinned on the canvas, where
-    a wide pen may have filled a loop, but drawn anew.
-    """
-    seen = stages(canvas, width=False)
-    if not ink.any():
-        return seen
-    middle = (len(ink) / 2, len(ink) / 2)
-    return seen._replace(thinned=_resample(ink, middle, CELLS, BOX), centred=_placed(ink, CELLS))
-
-
 def redrawn(strokes: Sequence[Stroke]) -> Image:
     """Return strokes as large as the box, on its fine grid, with a pen as wide as MNIST's."""
     points, size = as_points(strokes), (BOX + 2 * MARGIN) * CELLS

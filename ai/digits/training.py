@@ -26,11 +26,11 @@ from ai.files import (
     array_like,
     inside,
     number_of,
-    problem_in,
     read_as,
     read_json,
 )
-from ai.nn import OPTIMIZERS, Array, ModelFormatError
+from ai.nn import OPTIMIZERS, Array
+from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Measured, Run
 
 SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
@@ -221,10 +221,8 @@ class DigitTraining(Run):
     @classmethod
     def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
         config, described = read_settings(folder)
-        try:
+        with reading(folder, TRAINING_FILE):
             run = cls(config, described.seed, data)
-        except (ValueError, OverflowError) as error:
-            raise ModelFormatError(folder, [str(error)]) from error
         run.step, run.seconds, run.history = described.step, described.seconds, list(described.history)
         run.best = described.held_out
         if run.best is not None:
@@ -291,10 +289,8 @@ def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
 def read_settings(folder: Path) -> tuple[DigitConfig, DescribedRun]:
     """Return the settings of a run in a folder, and what else its training file says; raises ModelFormatError."""
     DigitClassifier.load(folder)
-    try:
+    with reading(folder, TRAINING_FILE):
         described = read_as(DescribedRun, read_json(inside(folder, TRAINING_FILE)))
         preset = DIGIT_PRESETS[described.preset].to_json()
         config = DigitConfig.from_json(preset | described.changes)
-    except (OSError, ValueError, TypeError, ArithmeticError) as error:
-        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     return config, described

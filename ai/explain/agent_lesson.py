@@ -2,7 +2,7 @@
 
 The step is taken by a copy of the agent, on the minibatch that it is handed, so that the run goes on as if nobody had
 looked. Nothing here computes what the agent computes: all numbers are read from the recording, or are arrays that the
-step has read or written. One memory's share of the gradient is the same backward pass with the others' errors at 0.
+step has read or written.
 """
 
 from __future__ import annotations
@@ -14,12 +14,10 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.n_step import NStep
-from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, Transition
 from ai.environment import Floats, Ints
 from ai.explain.learning_step import Step, recorded_step
-from ai.explain.recorder import RETURN, Function, Line
+from ai.explain.recorder import Function, Line
 from ai.nn import SGD, CostFunctions, NeuralNetwork
 
 _PART: Final = 0.2  # of the way to its target: the first step of a memory learned alone, were the network a line
@@ -51,19 +49,12 @@ class Lesson:
     flown: Flown | None  # None if that is not known
     cell: Transition  # the memory, (features,) and numbers, as it lies in the replay buffer
     state: Floats  # (features,) of it as the networks are given them
-    next_state: Floats
-    weight: float  # its weight in the cost, by importance sampling; 1 in uniform replay
     predicted: Floats  # (actions,) values of the state by the online network, before the step
-    next_online: Floats | None  # (actions,) values of the next state by the online network, if it picks
-    next_judged: Floats  # (actions,) the same by the network that judges
     best: int  # the action that is picked in the next state
     next_value: float  # its value by the network that judges
     discount: float  # gamma to the power of the memory's decisions
     target: float  # what the value should have been
     error: float  # the value of the action taken, less its target
-    batch_errors: Floats  # (batch,) the same of all memories of the minibatch
-    derivative: float  # of the cost by that value, divided by the size of the minibatch already
-    predicted_after: Floats  # (actions,) values of the state after the step
     step: Step  # of the optimizer
 
 
@@ -99,8 +90,6 @@ def explain(before: Before, cell: Transition, flown: Flown | None = None) -> Les
     row = len(before.weights) // 2  # the first half of a minibatch may be mirrored
     twin = _twin(before, cell, row)
     recorder, step = recorded_step(twin.learn, twin.online, twin.optimizer, _AGENT, row)
-    # What both networks said of the next states.
-    said = {id(call.owner): call.values[RETURN] for call in recorder.calls(NeuralNetwork.predict)}
     taken, judged, target = (
         recorder.call(each).values for each in (DeepQAgent.gradient_step, DeepQAgent._next_value, DeepQAgent.targets)
     )
@@ -110,27 +99,17 @@ def explain(before: Before, cell: Transition, flown: Flown | None = None) -> Les
         flown=flown,
         cell=cell,
         state=taken["states"][row],
-        next_state=judged["states"][row],
-        weight=float(before.weights[row]),
         predicted=taken["predicted"][row],
-        next_online=said[id(twin.online)][row] if twin.double else None,
-        next_judged=judged["values"][row],
         best=int(judged["best"][row]),
         next_value=float(judged["value"][row]),
         discount=float(target["discount"][row]),
         target=float(target["targets"][row]),
         error=float(taken["errors"][row]),
-        batch_errors=taken["errors"],
-        derivative=float(taken["derivative"][row, int(cell.action)]),
-        predicted_after=twin.online.predict(taken["states"])[row],
         step=step,
     )
 
 
-_AGENT: Final[tuple[Function, ...]] = (
-    DeepQAgent.learn, DeepQAgent._learn_from, DeepQAgent.targets, DeepQAgent._next_value,
-    DeepQAgent.gradient_step, DeepQAgent._update_target, Normalizer.scaled, NStep.add,
-)  # fmt: skip
+_AGENT: Final[tuple[Function, ...]] = (DeepQAgent.targets, DeepQAgent._next_value, DeepQAgent.gradient_step)
 
 
 class _HandedBatch(ReplayBuffer):

@@ -77,13 +77,14 @@ class Contrast:
         work = sum(_multiplications(layer) for layer in self._classifier.network.layers)
         return min(max(1, _WORK // max(work, 1)), _MOST)
 
-    def advance(self) -> None:
-        """Measure the next squares."""
+    def advance(self) -> bool:
+        """Measure the next squares; return whether those were the last."""
         now, self._ahead = self._ahead[: self.batch], self._ahead[self.batch :]
         if now:
             images = np.stack([self.changed(row, column, ink) for ink, row, column in now])
             for (ink, row, column), change in zip(now, self._read(images) - self.scores, strict=True):
                 (self.put if ink else self.taken)[row, column] = change
+        return self.done
 
     def changed(self, row: int, column: int, ink: int) -> Image:
         """Return the image with the square around a pixel emptied (0) or filled (1)."""

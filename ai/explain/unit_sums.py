@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 from typing import Final, Literal
 
 import numpy as np
@@ -100,35 +99,6 @@ class Stage:
         unit = self.unit(place)
         row, column, channel = map(int, np.unravel_index(int(unit.products.argmax()), unit.products.shape))
         return unit.corner[0] + row, unit.corner[1] + column, place[2] if unit.weights is None else channel
-
-    def strongest_reader(self, place: Place) -> Place | None:
-        """Return the unit of this stage in whose sum one of its inputs has the largest product.
-
-        None if no unit reads that input, or the layer cannot be written out.
-        """
-        row, column, channel = place
-        height, width, stride = self.window
-        tops = _windows(row, height, stride, self.outputs.shape[0])
-        lefts = _windows(column, width, stride, self.outputs.shape[1])
-        best: tuple[float, Place] | None = None
-        for top, left in product(tops, lefts):
-            match self.layer:
-                case ConvolutionLayer() as layer:
-                    weights = layer.kernels[column - left, row - top, channel]
-                case FullyConnectedLayer() as layer:
-                    weights = layer.weights[self.order[place]]
-                case _:  # every window reads its own channel alone
-                    return None if self.kind == "other" else (top, left, channel)
-            products = self.inputs[place] * weights
-            found = int(products.argmax())
-            if best is None or products[found] > best[0]:
-                best = float(products[found]), (top, left, found)
-        return best[1] if best else None
-
-
-def _windows(pixel: int, length: int, stride: int, count: int) -> range:
-    """Return the numbers of the windows, `stride` apart and so long, in which a pixel lies."""
-    return range(max(0, -((length - 1 - pixel) // stride)), min(pixel // stride + 1, count))
 
 
 def stages(network: NeuralNetwork, example: npt.ArrayLike) -> list[Stage]:

@@ -6,14 +6,13 @@ The lowest floor of `ai` and `game`; it stands on NumPy, and for locks on filelo
 from ai.files.folder import (
     CONFIG,
     NETWORK,
+    OF_A_RUN,
+    STATE_FILE,
     FolderKind,
     atomic_folder,
     claimed_folder,
-    move_state,
     recover_all,
     recover_folder,
-    remove_state,
-    state_folder,
     take_folder,
     user_dir,
 )
@@ -41,7 +40,6 @@ from ai.files.schema import (
     Duration,
     OneOf,
     OtherVersionError,
-    SchemaError,
     Seed,
     Share,
     Sized,
@@ -54,10 +52,10 @@ from ai.files.schema import (
 from ai.files.writing import append_line, free_path, take, write_bytes, write_text
 
 __all__ = [
-    "CONFIG", "CONTROLS", "MOST", "NETWORK", "Above", "Count", "Duration", "FolderKind", "OneOf", "OtherVersionError",
-    "SchemaError", "Seed", "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder", "brief",
-    "check_header", "claimed_folder", "count_of", "described", "free_path", "inside", "move_state", "number_of",
+    "CONFIG", "CONTROLS", "MOST", "NETWORK", "OF_A_RUN", "STATE_FILE", "Above", "Count", "Duration", "FolderKind",
+    "OneOf", "OtherVersionError", "Seed", "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder",
+    "brief", "check_header", "claimed_folder", "count_of", "described", "free_path", "inside", "number_of",
     "parse_json", "problem_in", "read_array", "read_arrays", "read_as", "read_bytes", "read_json", "read_lines",
-    "read_text", "recover_all", "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take",
-    "take_folder", "user_dir", "write_bytes", "write_text",
+    "read_text", "recover_all", "recover_folder", "shown", "sound_fields", "take", "take_folder", "user_dir",
+    "write_bytes", "write_text",
 ]  # fmt: skip

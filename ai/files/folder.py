@@ -21,7 +21,7 @@ from ai.files.writing import beside, synchronise, take
 
 CONFIG = "config.json"  # what every model's folder holds
 _NEW, _OLD = ".new", ".old"  # ends of the names of folders that are not finished, or were moved aside for a new one
-_ASIDE: Final = re.compile(r"\.(.+?)(\.[0-9a-f]{8})?\.(?:new|old)")  # such a name
+_ASIDE: Final = re.compile(r"\.(.+)\.[0-9a-f]{8}\.(?:new|old)")  # such a name
 _STALE: Final = 3600.0  # seconds after which one that is not finished counts as abandoned
 _DESKTOP: Final = ("*.DS_Store", "*Thumbs.db", "*desktop.ini")  # what systems leave wherever a folder was looked at
 
@@ -57,6 +57,8 @@ class FolderKind:
 
 
 NETWORK: Final = FolderKind("tranquility network", (CONFIG, "layer-*-*.npy"))
+STATE_FILE: Final = "state.npz"  # what a run goes on from besides its networks
+OF_A_RUN: Final = "training.json", "history.json", "curves.csv", "checkpoints.npz", STATE_FILE  # in any run's folder
 
 
 def user_dir() -> Path:
@@ -83,15 +85,16 @@ def atomic_folder(target: str | Path, kind: FolderKind | None = NETWORK) -> Iter
         yield new
         for made in [*new.rglob("*"), new]:
             synchronise(made)
-        _put(new, path, kind)
+        if kind and _checked(path, kind).exists():
+            path.rename(beside(path, _OLD))
+        new.rename(path)
         synchronise(path.parent)
     except BaseException:
         recover_folder(path)
         shutil.rmtree(new, ignore_errors=True)
         raise
     for old in _aside(path, _OLD):
-        if kind and (not any(old.iterdir()) or not kind.foreign(old)):
-            shutil.rmtree(old, ignore_errors=True)
+        shutil.rmtree(old, ignore_errors=True)
 
 
 def take_folder(folder: str | Path) -> ExitStack:
@@ -131,27 +134,9 @@ def recover_folder(target: str | Path) -> None:
 
 def recover_all(folder: Path) -> None:
     """Put back or delete what saves that were stopped have left in a folder; raises OSError if it can't be seen."""
-    for name in {name for name, _ in _left(folder)}:
+    for name in {found[1] for path in folder.iterdir() if (found := _ASIDE.fullmatch(path.name))}:
         recover_folder(folder / name)
         _clear_away(folder / name)
-
-
-def state_folder(folder: str | Path) -> Path:
-    """Return the folder of the state that belongs to a run's folder: hidden, and beside it."""
-    folder = Path(folder)
-    return folder.with_name(f".{folder.name}.state")
-
-
-def remove_state(folder: str | Path) -> None:
-    """Delete the state of a run that has ended for good; the network in its folder stays."""
-    shutil.rmtree(state_folder(folder), ignore_errors=True)
-
-
-def move_state(source: Path, target: Path) -> None:
-    """Let the state follow a run's folder to another name."""
-    remove_state(target)
-    with suppress(OSError):
-        state_folder(source).rename(state_folder(target))
 
 
 def _clear_away(path: Path) -> None:
@@ -162,17 +147,11 @@ def _clear_away(path: Path) -> None:
                 shutil.rmtree(left)
 
 
-def _left(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Yield what saves have left in a folder: the name that it was for, and its path."""
-    for path in folder.iterdir():
-        if (name := _ASIDE.fullmatch(path.name)) and path.is_dir() and not path.is_symlink():
-            yield name[1], path
-
-
 def _aside(path: Path, suffix: str) -> list[Path]:
     """Return the folders beside a path that were begun, or moved aside, for it."""
     with suppress(OSError):
-        return [left for name, left in _left(path.parent) if name == path.name and left.suffix == suffix]
+        found = [(each, _ASIDE.fullmatch(each.name)) for each in path.parent.iterdir() if each.suffix == suffix]
+        return [each for each, name in found if name and name[1] == path.name and not each.is_symlink()]
     return []
 
 
@@ -183,36 +162,10 @@ def _checked(target: str | Path, kind: FolderKind) -> Path:
     """
     recover_folder(target)
     path = Path(os.path.realpath(target))
-    if not path.name:
-        raise FileExistsError(f"{path} is no place for a model")
     if not os.path.lexists(path):
         return path
-    if not path.is_dir():
-        raise FileExistsError(f"{path} is something else than a folder, and is left as it is")
-    if _in_use(path):
-        raise FileExistsError(f"{path} is the folder that this program works in, and cannot be replaced: give another")
+    if not path.is_dir() or not path.name:
+        raise FileExistsError(f"{path} is no folder for a model, and is left as it is")
     if any(path.iterdir()) and (foreign := kind.foreign(path)):
         raise FileExistsError(f"{path} holds something else than a {kind.format} ({foreign}), and is left as it is")
     return path
-
-
-def _in_use(path: Path) -> bool:
-    """Whether the working directory is a folder or lies in it: replaced, it would be gone under the process."""
-    try:
-        return Path.cwd().is_relative_to(path)
-    except OSError:  # it is gone already
-        return False
-
-
-def _put(new: Path, target: Path, kind: FolderKind | None) -> None:
-    """Move the target aside, if it is still of its kind, and the new folder into its place."""
-    for last in (False, True):
-        if kind and _checked(target, kind).exists():
-            target.rename(beside(target, _OLD))
-        try:
-            new.rename(target)
-        except OSError:  # a reader may have put the old one back meanwhile
-            if last or not kind or not target.exists():
-                raise
-        else:
-            return

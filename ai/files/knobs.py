@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any, Self
 
 from ai.files.reading import shown
-from ai.files.schema import field_problems
+from ai.files.schema import check_field
 
 
 def knob(
@@ -76,8 +76,10 @@ class Knobs:
     @classmethod
     def problem_of(cls, name: str, value: Any) -> str:
         """Say what is wrong with a value of a field; empty if nothing is."""
-        if problems := field_problems(cls, name, value):
-            return "; ".join(problems)
+        try:
+            check_field(cls, name, value)
+        except ValueError as error:
+            return str(error)
         described = next(item for item in fields(cls) if item.name == name).metadata
         if described["choices"] and value not in described["choices"]:
             return f"{name} is one of {', '.join(described['choices'])}, not {shown(value)}"

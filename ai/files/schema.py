@@ -1,4 +1,4 @@
-"""Checked reading of JSON values: a dataclass says what a file holds, and one message names all that is wrong.
+"""Checked reading of JSON values: a dataclass says what a file holds, and a message names the place of a fault.
 
 The fields of a dataclass are those of the file. Their types are checked, and so is each rule that `Annotated` adds:
 `Annotated[float, Within(0, 1)]`. A field with a default may be missing, and one that the dataclass does not have is
@@ -20,17 +20,6 @@ from ai.files.reading import MOST, brief, number_of, parse_json, read_end, shown
 
 T = TypeVar("T")
 Check = Callable[[Any], Any]  # returns a value as its field holds it, or raises ValueError
-
-_NAMED: Final = 20  # problems that a message names
-
-
-class SchemaError(ValueError):
-    """Values are not what a file should hold; `problems` lists what is wrong, each with its place."""
-
-    def __init__(self, problems: list[str]) -> None:
-        self.problems = problems
-        named = [*map(brief, problems[:_NAMED]), *(["and more"] if len(problems) > _NAMED else [])]
-        super().__init__("; ".join(named))
 
 
 class OtherVersionError(ValueError):
@@ -85,10 +74,10 @@ Duration = Annotated[float, Within(0, MOST)]  # in seconds
 
 
 def read_as(kind: type[T], values: Any) -> T:
-    """Return a dataclass from what a JSON file has given; raises ValueError, which names all that is wrong."""
+    """Return a dataclass from what a JSON file has given; raises ValueError, which names the first fault."""
     right, problems = sound_fields(kind, _named(values))
     if problems:
-        raise SchemaError(problems)
+        raise ValueError(problems[0])
     return kind(**right)
 
 
@@ -108,10 +97,22 @@ def read_lines(kind: type[T], path: Path, most: int) -> tuple[list[T], int]:
 
 def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """Return those fields of a dataclass that a file has given and that are right, and what is wrong with the rest."""
-    known = _fields_of(kind)
-    problems = [f"{name} is missing" for name, (_, needed) in known.items() if needed and name not in values]
-    right, wrong = _sorted_out((name, check, values[name]) for name, (check, _) in known.items() if name in values)
-    return right, problems + wrong
+    right: dict[str, Any] = {}
+    problems: list[str] = []
+    for name, (check, needed) in _fields_of(kind).items():
+        if name in values:
+            try:
+                right[name] = _at(name, check, values[name])
+            except ValueError as error:
+                problems.append(str(error))
+        elif needed:
+            problems.append(f"{name} is missing")
+    return right, problems
+
+
+def check_field(kind: type, name: str, value: Any) -> Any:
+    """Return a value as a field of a dataclass holds it; raises ValueError for one of another type."""
+    return _at(name, _fields_of(kind)[name][0], value)
 
 
 def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
@@ -127,25 +128,12 @@ def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
     return values
 
 
-def _sorted_out(parts: Iterable[tuple[str, Check, Any]]) -> tuple[dict[str, Any], list[str]]:
-    """Check values by their places: return those that are right, and what is wrong, as in "flights[2].seed: ..."."""
-    right: dict[str, Any] = {}
-    problems: list[str] = []
-    for place, check, value in parts:
-        try:
-            right[place] = check(value)
-        except SchemaError as error:
-            problems += [f"{place}{'' if problem.startswith('[') else '.'}{problem}" for problem in error.problems]
-        except ValueError as error:
-            problems.append(f"{place}: {error}")
-        if len(problems) > _NAMED:  # a long list can be wrong throughout
-            break
-    return right, problems
-
-
-def field_problems(kind: type, name: str, value: Any) -> list[str]:
-    """Return what is wrong with a value of a field of a dataclass, by its type."""
-    return _sorted_out([(name, _fields_of(kind)[name][0], value)])[1]
+def _at(place: object, check: Check, value: Any) -> Any:
+    """Check the value of a place; raises ValueError, which begins with the place."""
+    try:
+        return check(value)
+    except ValueError as error:
+        raise ValueError(f"{brief(place, 40)}: {error}") from None
 
 
 @cache
@@ -203,19 +191,12 @@ def _tuple(checks: list[Check], repeated: bool, value: Any) -> tuple[Any, ...]:
         checks = checks * len(value)
     if len(value) != len(checks):
         raise ValueError(f"{shown(value)} is no list of {len(checks)}")
-    try:
-        return tuple([check(each) for check, each in zip(checks, value, strict=True)])
-    except ValueError:  # rare, so only then is each place noted
-        parts = ((f"[{place}]", check, each) for place, (check, each) in enumerate(zip(checks, value, strict=True)))
-        raise SchemaError(_sorted_out(parts)[1]) from None
+    return tuple([_at(place, *each) for place, each in enumerate(zip(checks, value, strict=True))])
 
 
 def _table(check: Check, value: Any) -> dict[str, Any]:
     """Check for a table, of which every value has to pass one check."""
-    right, problems = _sorted_out((brief(name, 40), check, each) for name, each in _named(value).items())
-    if problems:
-        raise SchemaError(problems)
-    return right
+    return {name: _at(name, check, each) for name, each in _named(value).items()}
 
 
 def _of(kind: type, words: str) -> Check:

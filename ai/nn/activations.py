@@ -3,8 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from types import MappingProxyType
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +28,7 @@ class Activation:
     function: Callable[..., Array]
     slope: Callable[[Array, Array, Array], object]
     name: str | None = None
-    options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
+    options: Mapping[str, float] = field(default_factory=dict, hash=False)
     initialise: Initialise = glorot_uniform  # draws weights that suit this activation
 
     @classmethod
@@ -41,23 +40,13 @@ class Activation:
             raise TypeError("an activation is a function and its derivative; the derivative is missing")
 
         def with_out(x: Array, out: Array | None = None) -> Array:
-            y = function(x)
-            if out is None:
-                return y
-            out[...] = y
-            return out
+            return np.positive(function(x), out=out)
 
         return cls(with_out, lambda x, _y, out: np.copyto(out, derivative(x)))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Copy and pickle an activation by its name, if it has one."""
-        given = (self.function, self.slope, None) if self.name is None else (None, None, self.name)
-        return _activation, (*given, dict(self.options))
-
     def __call__(self, x: npt.ArrayLike) -> Array:
         """Return f of each element, as a new array."""
-        x = _floating(x)
-        return self.function(x, out=np.empty_like(x))
+        return self.function(_floating(x))
 
     def derivative(self, x: npt.ArrayLike) -> Array:
         """Return f' of each element, as a new array."""
@@ -87,7 +76,7 @@ class ActivationFunctions:
     @staticmethod
     def use_relu() -> Activation:
         """Rectified linear unit max(0, x) (Nair & Hinton 2010); its derivative at 0 counts as 0."""
-        return Activation(_relu, lambda _x, y, out: np.greater(y, 0, out=out), "relu", initialise=he_normal)
+        return Activation(_relu, _relu_slope, "relu", initialise=he_normal)
 
     @staticmethod
     def use_leaky_relu(slope: float = 0.01) -> Activation:
@@ -95,11 +84,7 @@ class ActivationFunctions:
         if not 0 < slope < 1:
             raise ValueError(f"the slope of a leaky ReLU lies between 0 and 1, not {slope}")
         return Activation(
-            lambda x, out=None: np.maximum(x, slope * x, out=out),
-            partial(_leaky_slope, slope),
-            name="leaky_relu",
-            options=MappingProxyType({"slope": slope}),
-            initialise=he_normal,
+            partial(_leaky_relu, slope), partial(_leaky_slope, slope), "leaky_relu", {"slope": slope}, he_normal
         )
 
 
@@ -111,26 +96,9 @@ ACTIVATIONS: dict[str, Callable[..., Activation]] = {
 }
 
 
-def _activation(function: Any, slope: Any, name: str | None, options: dict[str, float]) -> Activation:
-    return ACTIVATIONS[name](**options) if name else Activation(function, slope)
-
-
 def _floating(x: npt.ArrayLike) -> Array:
     x = np.asarray(x)
     return x if np.issubdtype(x.dtype, np.floating) else x.astype(np.float64)
-
-
-def _relu(x: Array, out: Array | None = None) -> Array:
-    # NumPy compares two arrays three times faster than an array and a number.
-    y = np.empty_like(x) if out is None else out
-    y.fill(0)
-    return np.maximum(x, y, out=y)
-
-
-def _leaky_slope(slope: float, x: Array, _y: Array, out: Array) -> None:
-    np.greater(x, 0, out=out)
-    out *= 1 - slope  # two passes, and still faster than one that compares an array and a number
-    out += slope
 
 
 def _tanh_slope(_x: Array, y: Array, out: Array) -> None:
@@ -151,3 +119,25 @@ def _sigmoid_slope(_x: Array, y: Array, out: Array) -> None:
     """Fill `out` with y · (1 - y)."""
     np.subtract(1, y, out=out)
     out *= y
+
+
+def _relu(x: Array, out: Array | None = None) -> Array:
+    # NumPy compares two arrays three times faster than an array and a number.
+    y = np.empty_like(x) if out is None else out
+    y.fill(0)
+    return np.maximum(x, y, out=y)
+
+
+def _relu_slope(_x: Array, y: Array, out: Array) -> None:
+    np.greater(y, 0, out=out)
+
+
+def _leaky_relu(slope: float, x: Array, out: Array | None = None) -> Array:
+    y: Array = np.maximum(x, slope * x, out=out)
+    return y
+
+
+def _leaky_slope(slope: float, x: Array, _y: Array, out: Array) -> None:
+    np.greater(x, 0, out=out)
+    out *= 1 - slope  # two passes, and still faster than one that compares an array and a number
+    out += slope

@@ -6,7 +6,7 @@ whatever the learning rate (docs/adr/0003-cost-is-summed-over-outputs.md).
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -29,7 +29,7 @@ class Cost:
     function: CostFunction
     derivative: CostFunction
     name: str | None = None
-    options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
+    options: Mapping[str, float] = field(default_factory=dict, hash=False)
     logits: bool = False  # predictions are logarithms of odds, and `softmax` makes probabilities of them
 
     @classmethod
@@ -45,11 +45,6 @@ class Cost:
         """Return the cost of a batch; raises ValueError for targets of another shape."""
         return float(self.function(prediction, target))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Copy and pickle a cost by its name, if it has one."""
-        given = (self.function, self.derivative, None) if self.name is None else (None, None, self.name)
-        return _cost, (*given, dict(self.options))
-
     def __iter__(self) -> Iterator[CostFunction]:
         yield self
         yield self.derivative
@@ -61,16 +56,7 @@ class CostFunctions:
     @staticmethod
     def use_mse() -> Cost:
         """Squared error: Σ (prediction - target)², averaged over the batch."""
-
-        def function(prediction: Array, target: Array) -> float:
-            difference = _difference(prediction, target)
-            return float(np.vdot(difference, difference)) / _batch(difference)
-
-        def derivative(prediction: Array, target: Array) -> Array:
-            difference = _difference(prediction, target)
-            return difference * (2 / _batch(difference))
-
-        return Cost(function, derivative, "mse")
+        return Cost(_squared, _squared_slope, "mse")
 
     @staticmethod
     def use_huber(delta: float = 1.0) -> Cost:
@@ -80,17 +66,7 @@ class CostFunctions:
         """
         if not 0 < delta < np.inf:
             raise ValueError(f"delta of the Huber cost is a positive number, not {delta}")
-
-        def function(prediction: Array, target: Array) -> float:
-            error = np.abs(_difference(prediction, target))
-            curved = np.minimum(error, delta)
-            return float(np.sum(curved * (error - 0.5 * curved))) / _batch(error)
-
-        def derivative(prediction: Array, target: Array) -> Array:
-            error = _difference(prediction, target).clip(-delta, delta)
-            return error / _batch(error)
-
-        return Cost(function, derivative, "huber", MappingProxyType({"delta": delta}))
+        return Cost(partial(_huber, delta), partial(_huber_slope, delta), "huber", {"delta": delta})
 
     @staticmethod
     def use_softmax_cross_entropy() -> Cost:
@@ -100,21 +76,7 @@ class CostFunctions:
         the network ends without an activation, and `softmax` of its outputs are its probabilities. The derivative
         is softmax(prediction) · Σ target - target.
         """
-
-        def function(prediction: Array, target: Array) -> float:
-            logits = _shifted(prediction)
-            logarithms = logits - np.log(np.exp(logits).sum(axis=-1, keepdims=True))
-            # A class that is masked by -inf costs nothing unless it is the target.
-            target = np.asarray(target)
-            return -float(np.vdot(target, np.where(target == 0, 0.0, logarithms))) / _batch(logits)
-
-        def derivative(prediction: Array, target: Array) -> Array:
-            target = np.asarray(target)
-            error: Array = softmax(prediction) * target.sum(axis=-1, keepdims=True)
-            error -= target
-            return error / _batch(error)
-
-        return Cost(function, derivative, "softmax_cross_entropy", logits=True)
+        return Cost(_cross_entropy, _cross_entropy_slope, "softmax_cross_entropy", logits=True)
 
 
 def softmax(logits: Array) -> Array:
@@ -131,8 +93,39 @@ COSTS: dict[str, Callable[..., Cost]] = {
 }
 
 
-def _cost(function: Any, derivative: Any, name: str | None, options: dict[str, float]) -> Cost:
-    return COSTS[name](**options) if name else Cost(function, derivative)
+def _squared(prediction: Array, target: Array) -> float:
+    difference = _difference(prediction, target)
+    return float(np.vdot(difference, difference)) / _batch(difference)
+
+
+def _squared_slope(prediction: Array, target: Array) -> Array:
+    difference = _difference(prediction, target)
+    return difference * (2 / _batch(difference))
+
+
+def _huber(delta: float, prediction: Array, target: Array) -> float:
+    error = np.abs(_difference(prediction, target))
+    curved = np.minimum(error, delta)
+    return float(np.sum(curved * (error - 0.5 * curved))) / _batch(error)
+
+
+def _huber_slope(delta: float, prediction: Array, target: Array) -> Array:
+    error = _difference(prediction, target).clip(-delta, delta)
+    return error / _batch(error)
+
+
+def _cross_entropy(prediction: Array, target: Array) -> float:
+    logits, target = _shifted(prediction), np.asarray(target)
+    logarithms = logits - np.log(np.exp(logits).sum(axis=-1, keepdims=True))
+    # A class that is masked by -inf costs nothing unless it is the target.
+    return -float(np.vdot(target, np.where(target == 0, 0.0, logarithms))) / _batch(logits)
+
+
+def _cross_entropy_slope(prediction: Array, target: Array) -> Array:
+    target = np.asarray(target)
+    error: Array = softmax(prediction) * target.sum(axis=-1, keepdims=True)
+    error -= target
+    return error / _batch(error)
 
 
 def _shifted(logits: Array) -> Array:

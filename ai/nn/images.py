@@ -14,7 +14,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from ai.nn.layer import NO_ARRAY, ImageShape, Layer, checked_size, fitting
+from ai.nn.layer import NO_ARRAY, ImageShape, Layer, checked_shape, checked_size, fitting
 from ai.nn.layers import FullyConnectedLayer, ones
 from ai.nn.parameter import Array
 
@@ -39,12 +39,13 @@ class ConvolutionLayer(FullyConnectedLayer):
     outputs: ImageShape
 
     def __init__(self, inputs: ImageShape, filters: int, kernel: int, *, scale: float = 1.0) -> None:
-        height, width, channels = shape = _checked_shape(inputs)
+        height, width, channels = shape = checked_shape("inputs", inputs)
         self.filters, self.kernel = checked_size("filters", filters), checked_size("kernel", kernel)
         if self.kernel > min(height, width):
             raise ValueError(f"a kernel of {kernel} does not fit into {height} x {width}")
         super().__init__(self.kernel**2 * channels, self.filters, scale=scale)
-        self.inputs, self.outputs = shape, (height - self.kernel + 1, width - self.kernel + 1, self.filters)
+        self.inputs = shape
+        self.outputs = checked_shape("outputs", (height - self.kernel + 1, width - self.kernel + 1, self.filters))
 
     @property
     def kernels(self) -> Array:
@@ -53,7 +54,6 @@ class ConvolutionLayer(FullyConnectedLayer):
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
-        _check_images(self, input_data)
         self.input = fitting(self.input, input_data.shape, self.dtype)
         self.input[...] = input_data
         self.output = fitting(self.output, (len(input_data), *self.outputs), self.dtype)
@@ -61,7 +61,6 @@ class ConvolutionLayer(FullyConnectedLayer):
 
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array."""
-        _check_images(self, input_data)
         images = np.asarray(input_data, self.dtype, order="F")
         return self._convolve(images, np.empty((len(images), *self.outputs), self.dtype, "F"))
 
@@ -70,9 +69,10 @@ class ConvolutionLayer(FullyConnectedLayer):
         weights, bias = self.parameters
         error = np.asarray(output_error, self.dtype, order="F")
         bias.gradient[...] = error.T.reshape(self.filters, -1).dot(ones(error[..., 0].size, error.dtype))
-        weights.gradient.fill(0)
+        gradient = weights.gradient
+        gradient.fill(0)
         for x, y in self._blocks(len(error)):
-            weights.gradient += self._windows(self.input, x, y) @ _columns(error, x, y).T
+            gradient += self._windows(self.input, x, y) @ _columns(error, x, y).T
 
     def input_error(self, output_error: Array) -> Array:
         """Return the sum of what all windows that a pixel lies in send back: (batch, height, width, channels)."""
@@ -143,7 +143,7 @@ class MaxPoolingLayer(Layer):
     outputs: ImageShape
 
     def __init__(self, inputs: ImageShape, size: int = 2) -> None:
-        self.inputs = height, width, channels = _checked_shape(inputs)
+        self.inputs = height, width, channels = checked_shape("inputs", inputs)
         self.size = checked_size("size", size)
         if not 2 <= self.size <= min(height, width):
             raise ValueError(f"size lies between 2 and that of the image, {height} x {width}; not {size}")
@@ -151,14 +151,12 @@ class MaxPoolingLayer(Layer):
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the maxima, (batch, height, width, channels)."""
-        _check_images(self, input_data)
         self.input = input_data
         self.output = fitting(self.output, (len(input_data), *self.outputs), input_data.dtype)
         return self._maximum(input_data, self.output)
 
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array."""
-        _check_images(self, input_data)
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
     def input_error(self, output_error: Array) -> Array:
@@ -205,12 +203,11 @@ class FlattenLayer(Layer):
     error = NO_ARRAY
 
     def __init__(self, inputs: ImageShape) -> None:
-        self.inputs = height, width, channels = _checked_shape(inputs)
+        self.inputs = height, width, channels = checked_shape("inputs", inputs)
         self.outputs = height * width * channels
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the same numbers, (batch, values): a view, if the images are in Fortran order."""
-        _check_images(self, input_data)
         return input_data.reshape(-1, self.outputs, order="F")
 
     def predict(self, input_data: Array) -> Array:
@@ -222,19 +219,3 @@ class FlattenLayer(Layer):
         self.error = fitting(self.error, (len(output_error), *self.inputs), output_error.dtype)
         self.error.reshape(output_error.shape, order="F")[...] = output_error
         return self.error
-
-
-def _checked_shape(inputs: ImageShape) -> ImageShape:
-    """Return (height, width, channels) of plain numbers; raises ValueError if it is none."""
-    if not isinstance(inputs, tuple | list) or len(inputs) != 3:
-        raise ValueError(f"inputs is (height, width, channels), not {inputs!r}")
-    names = ("height", "width", "channels")
-    height, width, channels = (checked_size(name, size) for name, size in zip(names, inputs, strict=True))
-    checked_size("height · width · channels", height * width * channels)
-    return height, width, channels
-
-
-def _check_images(layer: Layer, images: Array) -> None:
-    if images.ndim != 4 or images.shape[1:] != layer.inputs:
-        kind = type(layer).__name__
-        raise ValueError(f"{kind} takes a batch of images of shape {layer.inputs}, not {images.shape}")

@@ -66,7 +66,8 @@ class Layer(ABC):
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """Learned parameters; in a network, views of its flat vectors."""
-        return tuple(map(Parameter, self.shapes, self.first_values()))
+        values = zip(self.shapes, self.first_values(), strict=True)
+        return tuple(Parameter(name, value, np.zeros_like(value)) for name, value in values)
 
     def initial_value(self, name: str) -> Array:
         """Return the first value of a parameter, of the shape that `shapes` names; draw it from `rng`."""
@@ -76,26 +77,21 @@ class Layer(ABC):
         """Return the first values of all parameters, the same at each call."""
         drawing = copy(self)
         drawing.rng = deepcopy(self.rng)
-        values = [np.array(drawing.initial_value(name), self.dtype) for name in self.shapes]
-        for (name, shape), value in zip(self.shapes.items(), values, strict=True):
-            if value.shape != tuple(shape):
-                raise ValueError(f"{name} begins with shape {value.shape}, and is said to have {shape}")
-        return values
+        return [np.array(drawing.initial_value(name), self.dtype) for name in self.shapes]
 
     def suit(self, initialise: Initialise) -> None:
         """Begin as suits the first activation that follows: what is drawn, and nobody has written to, is drawn anew."""
         if self.initialise is None:
-            before = self.first_values() if "parameters" in vars(self) else ()
-            self.initialise = initialise
-            for place, drawn in enumerate(before):
-                if np.array_equal(self.parameters[place].value, drawn):
-                    self.parameters[place].value = self.first_values()[place]
+            drawn, self.initialise = self.first_values(), initialise
+            for parameter, before, value in zip(self.parameters, drawn, self.first_values(), strict=True):
+                if np.array_equal(parameter.value, before):
+                    parameter.value[...] = value
 
     # Its place in a network
 
     in_network = False  # a network's parameters lie in its own flat vectors, so a layer is part of one alone
     rng: np.random.Generator | None = None  # of the layer alone; the network gives it one
-    dtype: npt.DTypeLike = np.float32  # the network's
+    dtype: Any = np.float32  # the network's
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
     inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
     outputs: int | ImageShape | None = None
@@ -115,12 +111,10 @@ def fitting(array: npt.NDArray[T], shape: tuple[int, ...], dtype: npt.DTypeLike)
     return np.zeros(shape, dtype, "F" if len(shape) == 4 else "C")
 
 
-# Limits of networks: a small file must not be able to ask for more than a machine has.
-MAX_SIZE: Final = 1 << 20  # of any one size
+# A small file must not be able to ask for more than a machine has.
+MOST_VALUES: Final = 1 << 18  # of an example, before and after any layer
 MOST_LAYERS: Final = 500
 MOST_PARAMETERS: Final = 12_000_000  # of an agent: with gradients and an optimizer, that takes 430 MB to load
-WIDEST: Final = 1 << 18  # values that a layer may make of one example
-MOST_WORK: Final = 1_000_000_000  # multiplications for one example
 
 
 def check_next(before: Sequence[Layer], layer: Layer) -> None:
@@ -128,20 +122,9 @@ def check_next(before: Sequence[Layer], layer: Layer) -> None:
     given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
     if None not in (given, layer.inputs) and given != layer.inputs:
         raise ValueError(f"{type(layer).__name__} takes {_said(layer.inputs)}, the layer before gives {_said(given)}")
-    layers = [*before, layer]
-    width = math.prod(layer.outputs) if isinstance(layer.outputs, tuple) else layer.outputs or 0
-    parameters = [sum(map(math.prod, one.shapes.values())) for one in layers]
-    # A convolution uses each of its parameters in every window.
-    windows = [math.prod(one.outputs[:2]) if isinstance(one.outputs, tuple) else 1 for one in layers]
-    work = sum(count * places for count, places in zip(parameters, windows, strict=True))
-    for count, most, words in (
-        (len(layers), MOST_LAYERS, "a network has at most {:,} layers, not {}"),
-        (width, WIDEST, "a layer makes at most {:,} values of an example, not {}"),
-        (sum(parameters), MOST_PARAMETERS, "a network has at most {:,} parameters, not {}"),
-        (work, MOST_WORK, "a network takes at most {:,} multiplications for an example, not {}"),
-    ):
-        if count > most:
-            raise ValueError(words.format(most, count))
+    parameters = sum(math.prod(shape) for one in (*before, layer) for shape in one.shapes.values())
+    if len(before) >= MOST_LAYERS or parameters > MOST_PARAMETERS:
+        raise ValueError(f"a network has at most {MOST_LAYERS} layers and {MOST_PARAMETERS:,} parameters")
 
 
 def _said(shape: int | ImageShape | None) -> str:
@@ -150,6 +133,15 @@ def _said(shape: int | ImageShape | None) -> str:
 
 def checked_size(name: str, size: int) -> int:
     """Return a size as a plain int; raises ValueError if it is none."""
-    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MAX_SIZE:
-        raise ValueError(f"{name} is a whole number from 1 to {MAX_SIZE}, not {size!r}")
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MOST_VALUES:
+        raise ValueError(f"{name} is a whole number from 1 to {MOST_VALUES}, not {size!r}")
     return int(size)
+
+
+def checked_shape(name: str, shape: ImageShape) -> ImageShape:
+    """Return (height, width, channels) of plain numbers; raises ValueError if it is none, or of too many values."""
+    if not isinstance(shape, tuple | list) or len(shape) != 3:
+        raise ValueError(f"{name} is (height, width, channels), not {shape!r}")
+    height, width, channels = map(checked_size, ("height", "width", "channels"), shape)
+    checked_size("height · width · channels", height * width * channels)
+    return height, width, channels

@@ -4,7 +4,6 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ai.nn.activations import Activation, Function
 from ai.nn.layer import NO_ARRAY, Layer, checked_size, fitting
@@ -215,7 +214,7 @@ class LayerNormalisation(Layer):
 
     @property
     def _average(self) -> Array:
-        return _constant(self.size, 1 / self.size, np.dtype(self.dtype))
+        return _constant(self.size, 1 / self.size, self.dtype)
 
     def initial_value(self, name: str) -> Array:
         """Return gains of 1 and biases of 0."""
@@ -260,13 +259,13 @@ class DropoutLayer(Layer):
         return self.error
 
 
-def ones(size: int, dtype: npt.DTypeLike) -> Array:
+def ones(size: int, dtype: Any) -> Array:
     """Return a vector of ones, to sum rows with: it is kept, and cannot be written to."""
-    return _constant(size, 1.0, np.dtype(dtype))
+    return _constant(size, 1.0, dtype)
 
 
 @lru_cache(maxsize=64)
-def _constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
+def _constant(size: int, value: float, dtype: Any) -> Array:
     vector: Array = np.full(size, value, dtype)
     vector.setflags(write=False)
     return vector

@@ -1,6 +1,7 @@
 """Neural network: a list of layers, the cost to minimise, and one flat vector of all parameters."""
 
 from collections.abc import Iterator, Sequence
+from copy import deepcopy
 from pathlib import Path
 from typing import Any, Literal, Self, TypeVar
 
@@ -11,7 +12,7 @@ from ai.nn.costs import Cost, CostFunction
 from ai.nn.layer import Layer, check_next
 from ai.nn.layers import ActivationLayer, DropoutLayer
 from ai.nn.optimizers import SGD, Optimizer
-from ai.nn.parameter import Array, pack
+from ai.nn.parameter import Array, Parameter
 from ai.nn.storage import read_network, save_network
 
 N = TypeVar("N", bound="NeuralNetwork")
@@ -55,10 +56,10 @@ class NeuralNetwork:
                 kind = type(layer).__name__
                 raise ValueError(f"this {kind} belongs to a network already; make another, or copy that one")
         for layer in layers:
+            self._take([layer])
             if isinstance(layer, ActivationLayer):
-                for before in (*self.layers, *layers[: layers.index(layer)]):
+                for before in self.layers:
                     before.suit(layer.activation.initialise)
-        self._take(layers)
         return self
 
     def _take(self, layers: Sequence[Layer]) -> None:
@@ -69,7 +70,16 @@ class NeuralNetwork:
                 self._takes = layer.inputs if isinstance(layer.inputs, tuple) else (layer.inputs,)
         self.layers += layers
         parameters = [parameter for layer in self.layers for parameter in layer.parameters]
-        self._values, self._gradients = pack(parameters, self.dtype)
+        self._values = np.concatenate([np.zeros(0), *(value.ravel() for _, value, _ in parameters)], dtype=self.dtype)
+        self._gradients = np.zeros_like(self._values)
+        start = 0
+        for layer in self.layers:
+            views = []
+            for name, value, _ in layer.parameters:
+                parts = (flat[start : start + value.size] for flat in (self._values, self._gradients))
+                views.append(Parameter(name, *(part.reshape(value.shape) for part in parts)))
+                start += value.size
+            layer.parameters = tuple(views)
 
     @property
     def values(self) -> Array:
@@ -182,10 +192,8 @@ class NeuralNetwork:
         examples, targets = np.asarray(x, self.dtype), np.asarray(y, self.dtype)
         if len(examples) != len(targets) or not len(examples):
             raise ValueError(f"{len(examples)} inputs need as many targets, at least one; not {len(targets)}")
-        for name, numbers in (("input", examples), ("target", targets)):
-            if not np.isfinite(numbers).all():
-                row, *place = np.argwhere(~np.isfinite(numbers))[0].tolist()
-                raise ValueError(f"{name} {row} is {numbers[row, *place]} at place {place}, and no finite number")
+        if not (np.isfinite(examples).all() and np.isfinite(targets).all()):
+            raise ValueError("inputs and targets are finite numbers")
         optimizer = optimizer or SGD(learning_rate)
         rng = rng or np.random.default_rng(0)
         history = []
@@ -204,21 +212,16 @@ class NeuralNetwork:
     def correct(self, prediction: Array, y: npt.ArrayLike, optimizer: Optimizer) -> float:
         """Do the second half of `train_batch`, for `prediction` as the last forward pass returned it."""
         target: Array = np.asarray(y, self.dtype)
-        if prediction.shape != target.shape:
-            raise ValueError(f"the targets have shape {target.shape}, the predictions {prediction.shape}")
         with np.errstate(over="ignore", invalid="ignore"):
             cost = self.cost(prediction, target)
             self.backward_propagate(self.cost.derivative(prediction, target))
-        optimizer.serve(self.values)
         if len(target):
             optimizer.step(self.values, self.gradients, cost)
         return cost
 
     def copy(self) -> Self:
         """Return an independent network with equal parameters."""
-        make, parts = self.__reduce__()
-        twin: Self = make(*parts)
-        return twin
+        return deepcopy(self)
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Copy and pickle what `copy` copies: parameters stay views of one flat vector, and buffers are left out."""
@@ -235,7 +238,7 @@ class NeuralNetwork:
 
     @classmethod
     def load(cls, folder: str | Path) -> Self:
-        """Read a network from its folder; raises ModelFormatError, which names all that is wrong with it."""
+        """Read a network from its folder; raises ModelFormatError, which names what is wrong with it."""
         return _made(cls, *read_network(folder))
 
 
@@ -261,8 +264,6 @@ def _batches(
     """Yield what picks each batch of one epoch; the last may be smaller."""
     if sampling not in ("sequential", "random"):
         raise ValueError(f"sampling is 'sequential' or 'random', not {sampling!r}")
-    if batch_size < 1:
-        raise ValueError(f"batch_size is at least 1, not {batch_size}")
     order = rng.permutation(examples) if sampling == "random" else None
     for start in range(0, examples, batch_size):
         batch = slice(start, start + batch_size)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import array_like
+from ai.files import array_like, count_of
 from ai.nn.parameter import Array
 
 
@@ -37,7 +37,6 @@ class Optimizer(ABC):
     """
 
     remembers: tuple[str, ...] = ()  # names of what it remembers of each parameter from step to step
-    never_negative: tuple[str, ...] = ()  # which of these no step can bring below 0
 
     def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
         if isinstance(learning_rate, bool) or not isinstance(learning_rate, int | float | np.number):
@@ -47,11 +46,6 @@ class Optimizer(ABC):
         self.steps = 0
         self.memory: dict[str, Array] = {}
         self.scratch: Array = np.empty(0)
-        self._moved: Array | None = None  # the parameters of the network that it serves
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Copy and pickle all but whose parameters they are: a copy moves those of a copied network."""
-        return vars(self) | {"_moved": None}
 
     def step(self, values: Array, gradients: Array, cost: float = 0.0) -> float:
         """Move `values`, in place, and return the length of `gradients` as they came.
@@ -79,13 +73,6 @@ class Optimizer(ABC):
         self.steps += 1
         return length
 
-    def serve(self, values: Array) -> None:
-        """Take note of the network's parameters that are to be moved; raises ValueError if others were before."""
-        if self.remembers and self._moved is not values:
-            if self._moved is not None and self.steps:
-                raise ValueError("an optimizer remembers one network's gradients; another network needs its own")
-            self._moved = values
-
     def state(self) -> dict[str, npt.NDArray[Any]]:
         """Return copies of all that the next step depends on, besides the settings."""
         return {"steps": np.array(self.steps)} | {name: memory.copy() for name, memory in self.memory.items()}
@@ -96,17 +83,12 @@ class Optimizer(ABC):
         Raises ValueError, and changes nothing, if the state is not of this kind of optimizer, or not one of these
         parameters.
         """
-        steps = np.asarray(state.get("steps", -1))
-        if steps.shape != () or steps.dtype.kind not in "iu" or not 0 <= steps < 1 << 53:
-            raise ValueError(f"not a state of {type(self).__name__}: it does not say after how many steps")
-        names = self.remembers if steps else ()
+        names = self.remembers if state.get("steps", 0) else ()
         if set(state) != {"steps", *names}:
             raise ValueError(f"not a state of {type(self).__name__}: it holds {', '.join(sorted(state))}")
-        memory = {name: array_like(values, np.asarray(state[name]), name) for name in names}
-        for name in self.never_negative:
-            if name in memory and (memory[name] < 0).any():
-                raise ValueError(f"{name} holds numbers below 0, and is a sum of squares")
-        self.steps, self.memory, self.scratch, self._moved = int(steps), memory, np.empty(0), None
+        steps = count_of(state["steps"].tolist())
+        memory = {name: array_like(values, state[name], name) for name in names}
+        self.steps, self.memory, self.scratch = steps, memory, np.empty(0)
 
     @abstractmethod
     def _fill_step(self, gradients: Array, number: int) -> None:
@@ -157,7 +139,6 @@ class Adam(Optimizer):
     """
 
     remembers = ("gradient_sum", "square_sum")
-    never_negative = ("square_sum",)
 
     def __init__(
         self,

@@ -1,7 +1,7 @@
 """Parameters of layers: named arrays, each with its gradient, and their initialisation."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -10,56 +10,15 @@ Array = npt.NDArray[np.floating[Any]]
 Initialise = Callable[[np.random.Generator, int, int], Array]  # draws weights (inputs, outputs)
 
 
-class Parameter:
+class Parameter(NamedTuple):
     """One learned array, and the gradient of the cost with respect to it, of the same shape and dtype.
 
-    Assigning to either writes into the array that is there, since a network has it in its flat vector.
+    In a network both are views of its flat vectors: write into them, as in `value[...] = 0`.
     """
 
-    def __init__(self, name: str, value: Array) -> None:
-        self.name = name
-        self._value, self._gradient = value, np.zeros_like(value)
-
-    @property
-    def value(self) -> Array:
-        """What is learned."""
-        return self._value
-
-    @value.setter
-    def value(self, value: npt.ArrayLike) -> None:
-        self._value[...] = self._fitting(value)
-
-    @property
-    def gradient(self) -> Array:
-        """What the last backward pass left."""
-        return self._gradient
-
-    @gradient.setter
-    def gradient(self, gradient: npt.ArrayLike) -> None:
-        self._gradient[...] = self._fitting(gradient)
-
-    def _fitting(self, given: npt.ArrayLike) -> npt.NDArray[Any]:
-        array = np.asarray(given)
-        if array.shape != self._value.shape or array.dtype.kind not in "fiub":
-            raise ValueError(f"{self.name} are numbers of shape {self._value.shape}, not {array.dtype} {array.shape}")
-        return array
-
-    def move(self, value: Array, gradient: Array) -> None:
-        """Write both into other arrays of this shape, and keep them there from now on."""
-        value[...], gradient[...] = self._value, self._gradient
-        self._value, self._gradient = value, gradient
-
-
-def pack(parameters: Sequence[Parameter], dtype: npt.DTypeLike) -> tuple[Array, Array]:
-    """Move the parameters into two flat vectors, values and gradients, of which they become views."""
-    size = sum(parameter.value.size for parameter in parameters)
-    values, gradients = np.zeros(size, dtype), np.zeros(size, dtype)
-    start = 0
-    for parameter in parameters:
-        shape, part = parameter.value.shape, slice(start, start + parameter.value.size)
-        parameter.move(values[part].reshape(shape), gradients[part].reshape(shape))
-        start = part.stop
-    return values, gradients
+    name: str
+    value: Array
+    gradient: Array
 
 
 def glorot_uniform(rng: np.random.Generator, inputs: int, outputs: int) -> Array:

@@ -4,7 +4,7 @@ The reasons are in docs/adr/0004-models-are-folders.md.
 """
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from inspect import signature
 from pathlib import Path
@@ -29,7 +29,7 @@ from ai.files import (
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.costs import COSTS, Cost
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
-from ai.nn.layer import MOST_LAYERS, Layer, check_next
+from ai.nn.layer import Layer, check_next
 from ai.nn.layers import ActivationLayer, DropoutLayer, DuelingLayer, FullyConnectedLayer, LayerNormalisation
 from ai.nn.parameter import Array, Parameter
 
@@ -38,17 +38,19 @@ L = TypeVar("L", bound=Layer)
 
 FORMAT = NETWORK.format
 VERSION = 1
-_NAMED = 20  # problems that a message names
 DTYPES = ("float32", "float64")
 LAYERS: dict[str, type[Layer]] = {
-    "FullyConnectedLayer": FullyConnectedLayer,
-    "DuelingLayer": DuelingLayer,
-    "ActivationLayer": ActivationLayer,
-    "LayerNormalisation": LayerNormalisation,
-    "DropoutLayer": DropoutLayer,
-    "ConvolutionLayer": ConvolutionLayer,
-    "MaxPoolingLayer": MaxPoolingLayer,
-    "FlattenLayer": FlattenLayer,
+    kind.__name__: kind
+    for kind in (
+        FullyConnectedLayer,
+        DuelingLayer,
+        ActivationLayer,
+        LayerNormalisation,
+        DropoutLayer,
+        ConvolutionLayer,
+        MaxPoolingLayer,
+        FlattenLayer,
+    )
 }
 
 
@@ -64,13 +66,24 @@ def register_layer(kind: type[L]) -> type[L]:
 
 
 class ModelFormatError(ValueError):
-    """A folder is not a model that can be read; `problems` lists all that is wrong with it."""
+    """A folder is not a model that can be read: `problem` is the first thing found wrong with it."""
 
-    def __init__(self, folder: str | Path, problems: list[str]) -> None:
-        more = [f"and {len(problems) - _NAMED:,} more"] if len(problems) > _NAMED else []
-        self.problems = [*map(brief, problems[:_NAMED]), *more]
-        super().__init__("\n  - ".join([f"no readable model in {folder}:", *self.problems]))
-        self.folder = Path(folder)
+    def __init__(self, folder: str | Path, problem: str) -> None:
+        super().__init__(f"no readable model in {folder}: {brief(problem)}")
+        self.problem = problem
+
+
+@contextmanager
+def reading(folder: str | Path, part: str) -> Iterator[None]:
+    """Raise whatever goes wrong with a part of a folder as a ModelFormatError; damage can surface as any exception."""
+    try:
+        yield
+    except ModelFormatError as error:
+        raise ModelFormatError(folder, f"{part}: {error.problem}") from error
+    except OSError as error:
+        raise ModelFormatError(folder, f"{Path(error.filename or part).name}: {error.strerror or error}") from error
+    except Exception as error:
+        raise ModelFormatError(folder, f"{part}: {problem_in(error)}") from error
 
 
 def save_network(folder: str | Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
@@ -114,69 +127,39 @@ def _described(value: object) -> object:
 
 
 def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
-    """Read cost, layers and dtype; raises ModelFormatError, which names all that is wrong with the folder."""
+    """Read cost, layers and dtype; raises ModelFormatError."""
     folder = Path(folder)
     recover_folder(folder)
-    problems: list[str] = []
-    with noted(problems, CONFIG):
-        config = _read_config(folder)
-    if problems:
-        raise ModelFormatError(folder, problems)
-    dtype, descriptions = config.get("dtype"), config.get("layers")
-    if dtype not in DTYPES:
-        problems.append(f"{CONFIG}: dtype is {shown(dtype)}, not one of {', '.join(DTYPES)}")
-    with noted(problems, f"{CONFIG}: cost"):
-        cost = _named(COSTS, config.get("cost"))
-    if not isinstance(descriptions, list):
-        problems.append(f"{CONFIG}: layers is to be a list")
-        descriptions = []
-    layers: dict[int, Layer] = {}
-    for index, description in enumerate(descriptions[: MOST_LAYERS + 1]):
-        with noted(problems, f"{CONFIG}: layer {index}"):
+    with reading(folder, CONFIG):
+        if not folder.is_dir():
+            raise ValueError("this is a file, not a folder" if folder.exists() else "there is no such folder")
+        config = check_header(read_json(inside(folder, CONFIG)), FORMAT, VERSION)
+        dtype = config["dtype"]
+        if dtype not in DTYPES:
+            raise ValueError(f"dtype is {shown(dtype)}, not one of {', '.join(DTYPES)}")
+        cost = _named(COSTS, config["cost"])
+        descriptions = config["layers"]
+        if not isinstance(descriptions, list):
+            raise ValueError("layers is to be a list")
+    layers: list[Layer] = []
+    for index, description in enumerate(descriptions):
+        with reading(folder, f"{CONFIG}: layer {index}"):
             layer = _make_layer(description)
-            check_next(list(layers.values()), layer)
-            layers[index] = layer
-    for index, layer in layers.items() if dtype in DTYPES else ():
-        parameters = []
-        for name, shape in layer.shapes.items():
-            with noted(problems, f"{CONFIG}: layer {index}"):
-                array = _read_array(folder, descriptions[index], name, shape, str(dtype))
-                parameters.append(Parameter(name, array))
-        layer.parameters = tuple(parameters)
-    if problems:
-        raise ModelFormatError(folder, problems)
-    return cost, list(layers.values()), str(dtype)
-
-
-@contextmanager
-def noted(problems: list[str], place: str) -> Iterator[None]:
-    """Add what is wrong at a place to `problems`, instead of raising it; damage can surface as any exception."""
-    try:
-        yield
-    except ModelFormatError as error:
-        problems += [f"{place}: {problem}" for problem in error.problems]
-    except OSError as error:
-        name = Path(error.filename or place).name
-        asked = "" if name == place else f", and {place} asks for it"
-        problems.append(f"{name}: {error.strerror or error}{asked}")
-    except Exception as error:
-        problems.append(f"{place}: {problem_in(error)}")
-
-
-def _read_config(folder: Path) -> dict[str, Any]:
-    if not folder.is_dir():
-        raise ValueError("this is a file, not a folder" if folder.exists() else "there is no such folder")
-    return check_header(read_json(inside(folder, CONFIG)), FORMAT, VERSION)
+            check_next(layers, layer)
+            arrays = [_read_array(folder, description, name, shape, dtype) for name, shape in layer.shapes.items()]
+            layer.parameters = tuple(Parameter(*each, np.zeros(0)) for each in zip(layer.shapes, arrays, strict=True))
+            layers.append(layer)
+    return cost, layers, dtype
 
 
 def _make_layer(description: Any) -> Layer:
-    name = _required(description, "type")
+    name = description["type"]
     if name not in LAYERS:
         raise ValueError(f"unknown type {shown(name)}; known are {', '.join(LAYERS)}")
     kind = LAYERS[name]
     if unknown := sorted(description.keys() - {"type", "arrays", *kind.settings}):
-        raise ValueError(f"a {name} has no {brief(', '.join(unknown))}")
-    settings = {setting: _required(description, setting) for setting in kind.settings}
+        raise ValueError(f"a {name} has no {', '.join(unknown)}")
+    settings = {setting: description[setting] for setting in kind.settings}
     if "activation" in settings:
         settings["activation"] = _named(ACTIVATIONS, settings["activation"])
     return kind(**settings)
@@ -184,29 +167,22 @@ def _make_layer(description: Any) -> Layer:
 
 def _named(table: Mapping[str, Callable[..., T]], description: Any) -> T:
     """Return the cost or activation of a description such as {"name": "huber", "delta": 1.0}."""
-    name = _required(description, "name")
+    name = description["name"]
     if name not in table:
         raise ValueError(f"unknown name {shown(name)}; known are {', '.join(table)}")
     make = table[name]
-    return make(**{option: _required(description, option) for option in signature(make).parameters})
+    return make(**{option: description[option] for option in signature(make).parameters})
 
 
-def _required(description: Any, name: str) -> Any:
-    if not isinstance(description, dict) or name not in description:
-        raise ValueError(f"{name} is missing")
-    return description[name]
-
-
-def _read_array(folder: Path, description: Any, name: str, shape: Sequence[int], dtype: str) -> Array:
+def _read_array(folder: Path, description: Any, name: str, shape: tuple[int, ...], dtype: str) -> Array:
     """Return a parameter's array; raises OSError or ValueError if it is not as the layer and the folder say."""
-    entry = _required(_required(description, "arrays"), name)
-    file = _required(entry, "file")
+    entry = description["arrays"][name]
+    file = entry["file"]
     if not isinstance(file, str) or Path(file).name != file:
         raise ValueError(f"{name}: {shown(file)} is not a file of this folder")
-    said = {key: entry.get(key) for key in ("shape", "dtype")}
-    if said != {"shape": list(shape), "dtype": dtype}:
-        raise ValueError(f"{file} is said to hold {brief(said, 60)}, and should hold {dtype} {list(shape)}")
-    array: Array = read_array(inside(folder, file), tuple(shape), dtype)
+    if (entry["shape"], entry["dtype"]) != (list(shape), dtype):
+        raise ValueError(f"{file} is not said to hold {dtype} {list(shape)}")
+    array: Array = read_array(inside(folder, file), shape, dtype)
     if not np.isfinite(array).all():
         raise ValueError(f"{file} holds numbers that are not finite")
     return array

@@ -1,7 +1,7 @@
 """A pilot, or a pay, in a file of the player's: flown as it is saved.
 
-A file that was saved is tried beside the one that flies, and takes over with its first answer. Where it fails, now or
-later, the last good one flies on.
+A file that was saved is tried beside the one that flies, and takes over with its first answer. Where it fails to give
+one, the last good one flies on.
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ from ai.pilots.process import PilotError, PilotProcess
 
 PATIENCE: Final = 0.05  # seconds for a decision in a flight that somebody watches
 LATE: Final = 3  # decisions in a row that may not take longer
-LOADING: Final = 25.0  # seconds for a file to be loaded: PyTorch takes its time
-FIRST: Final = 2.0  # seconds for the first decision of a file that was saved
+LOADING: Final = 25.0  # seconds for a file to be loaded, and to decide: PyTorch takes its time
 ALONE: Final = 5.0  # seconds for an answer where nobody watches
 _PIECE: Final = 64  # landers that a file with `act` alone is asked for at once, where nobody watches
 _LOOK: Final = 0.2  # seconds between two looks at the file
@@ -37,14 +36,14 @@ class _Alone:
         self.close = self._process.close
         try:
             if not self._process.ready(LOADING):
-                raise self._process.late(f"it was not loaded after {LOADING:.0f} seconds", 1.0)
+                raise self._process.ended(f"it was not loaded after {LOADING:.0f} seconds")
         except PilotError:
             self.close()
             raise
 
     def _asked(self, question: Any, what: str) -> Any:
         if (answer := self._process.ask(question, ALONE)) is None:
-            raise self._process.late(f"{what} took longer than {ALONE:.0f} seconds", 1.0)
+            raise self._process.ended(f"{what} took longer than {ALONE:.0f} seconds")
         return answer
 
 
@@ -94,10 +93,8 @@ class OwnPilot:
         self.flies_on, self.ready, self.chosen, self.version = False, False, True, 0
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None
-        self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not
         self._next: PilotProcess | None = None  # the file that was saved last, until its first answer
-        self._until, self._slow = 0.0, ""  # when the next one must be loaded or have decided, and what is said if not
-        self._late, self._looked = 0, -_LOOK
+        self._until, self._late, self._looked = 0.0, 0, -_LOOK
         self._stamp: tuple[int, int] | None = None
         self.look()
 
@@ -106,22 +103,26 @@ class OwnPilot:
         observation = observation[:, :NUM_FEATURES]
         self.look()
         self._try_next(observation)
-        actions: Ints | None = None
-        while self._flying:
-            try:
-                actions = self._flying.ask(observation, self._patience)
-                self._late = 0 if actions is not None else self._late + 1
-                if self._late == LATE:
-                    longest = f"{1000 * self._patience:.0f} ms"
-                    raise self._flying.late(f"{LATE} decisions in a row took longer than {longest}")
-                break
-            except PilotError as error:
-                self.problem = str(error)
-                if not self._fall_back():
-                    break
+        actions = self._decided(observation) if self._flying else None
         if actions is None:
             actions = held if self._flying and held is not None else np.full(len(observation), COAST, np.intp)
         return actions
+
+    def _decided(self, observation: Floats) -> Ints | None:
+        """Return what the file that flies decides; None if it fails or is late, for which its process may be ended."""
+        assert self._flying
+        try:
+            actions: Ints | None = self._flying.ask(observation, self._patience)
+            self._late = 0 if actions is not None else self._late + 1
+            if self._late == LATE:
+                raise self._flying.ended(f"{LATE} decisions in a row took longer than {1000 * self._patience:.0f} ms")
+            return actions
+        except PilotError as error:
+            self.problem, self.flies_on = str(error), False
+            if self._flying.gone:  # else it may raise only now and then
+                self._flying = None
+                self.version += 1
+            return None
 
     def look(self) -> None:
         """Look whether the file was saved anew, and load it then; see whether a file that is loading fails."""
@@ -132,42 +133,34 @@ class OwnPilot:
                 if (stamp := _stamp(self.path)) != self._stamp:
                     self._stamp = stamp
                     self._leave_next()
-                    self._next = PilotProcess(self.path)
-                    self._until, self._slow = now + LOADING, f"it was not loaded after {LOADING:.0f} seconds"
+                    self._next, self._until = PilotProcess(self.path), now + LOADING
             if self._next:
                 if self._next.ready():
-                    self.ready = True
+                    self.ready, self._until = True, now + LOADING
                 elif now > self._until:
-                    raise self._next.late(self._slow)
+                    raise self._next.ended(f"it gave no answer within {LOADING:.0f} seconds")
         except PilotError as error:
             self._refuse(error)
 
     def close(self) -> None:
         """End its processes."""
-        for process in (self._flying, self._before, self._next):
-            if process:
-                process.close()
-        self._flying = self._before = self._next = None
+        self._leave_next()
+        if self._flying:
+            self._flying.close()
+        self._flying = None
 
     def _try_next(self, observation: Floats) -> None:
         """Let the file that was saved last fly from its first answer on."""
         try:
-            if not self._next or not self._next.ready():
-                return
-            if self._next.ask(observation, self._patience) is None:
-                first = f"its first decision took longer than {FIRST:.0f} seconds"
-                if self._slow != first:
-                    self._until, self._slow = self._clock() + FIRST, first
-                elif self._clock() > self._until:
-                    raise self._next.late(first)
+            if not self._next or self._next.ask(observation, self._patience) is None:
                 return
         except PilotError as error:
             self._refuse(error)
             return
-        if self._before:
-            self._before.close()
-        self._before, self._flying, self._next = self._flying, self._next, None
-        self.problem, self._late = "", 0
+        if self._flying:
+            self._flying.close()
+        self._flying, self._next = self._next, None
+        self.ready, self.problem, self._late = True, "", 0
         self.version += 1
 
     def _refuse(self, error: PilotError) -> None:
@@ -178,21 +171,6 @@ class OwnPilot:
         if self._next:
             self._next.close()
         self._next = None
-
-    def _fall_back(self) -> bool:
-        """Let the one before fly in place of the one that failed, and return whether there is one.
-
-        Without one, a file that only raised flies on: it may do so now and then.
-        """
-        assert self._flying
-        if self._before or self._late == LATE or self._flying.gone:
-            self._flying.close()
-            self._flying, self._before, self._late = self._before, None, 0
-            self.version += 1
-            self.flies_on = self._flying is not None
-        else:
-            self.flies_on = False
-        return self.flies_on
 
 
 def _stamp(path: Path) -> tuple[int, int]:

@@ -11,11 +11,11 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.schedule import linear
 from ai.agent.storage import AGENT_FILE
-from ai.files import brief, problem_in, shown
+from ai.files import brief, shown
 from ai.files.knobs import knob
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
-from ai.nn import ModelFormatError
+from ai.nn.storage import reading
 
 LANDER: Final = "lander"
 ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
@@ -70,17 +70,15 @@ class Config(AgentConfig):
 
 
 def load_agent(folder: str | Path, *, env: str | None = None) -> tuple[DeepQAgent, Config]:
-    """Read an agent and the configuration of its run. Raises ModelFormatError, which names everything that is wrong.
+    """Read an agent and the configuration of its run. Raises ModelFormatError, which names what is wrong.
 
     Reading imports no code that a file names: an agent for an environment "module:Name" is refused, unless the
     caller names that same `env`.
     """
     agent = DeepQAgent.load(folder)
-    try:
+    with reading(folder, AGENT_FILE):
         config = Config.of(agent)
         check_env(config.env, env)
-    except (TypeError, ValueError) as error:
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: {problem_in(error)}"]) from error
     agent.config, agent.run_settings = config, {}
     return agent, config
 

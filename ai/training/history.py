@@ -19,7 +19,6 @@ from ai.agent.normalizer import Normalizer
 from ai.digits.training import DigitProgress
 from ai.environment import Doubles, Floats
 from ai.files import MOST, Above, Count, Sized, Within, inside, problem_in, read_arrays, read_as, read_json, read_text
-from ai.files import described as array_said
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
 from ai.run import Measured
@@ -244,7 +243,7 @@ class History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
         history, file = cls(columns), HISTORY_FILE
         if (Path(folder) / _FORMERLY).exists():
-            raise ModelFormatError(folder, [f"{_FORMERLY} was saved by another version, and is left as it is"])
+            raise ModelFormatError(folder, f"{_FORMERLY} was saved by another version, and is left as it is")
         try:
             described = read_json(inside(folder, file))
             if not isinstance(described, dict) or described.get("version") != _VERSION:
@@ -253,13 +252,13 @@ class History:
             file = CURVES_FILE
             history._restore_points(read_text(inside(folder, file)).splitlines())
             file = CHECKPOINTS_FILE
-            history._restore_networks(read_arrays(inside(folder, file), 4 * _MOST_VALUES + _SLACK, _expect)["values"])
+            history._restore_networks(read_arrays(inside(folder, file), 4 * _MOST_VALUES + _SLACK)["values"])
         except FileNotFoundError as error:
             if file == HISTORY_FILE:
                 return cls(columns)
-            raise ModelFormatError(folder, [f"{file} is missing"]) from error
+            raise ModelFormatError(folder, f"{file} is missing") from error
         except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as error:
-            raise ModelFormatError(folder, [f"{file}: {problem_in(error)}"]) from error
+            raise ModelFormatError(folder, f"{file}: {problem_in(error)}") from error
         return history
 
     def _restore(self, described: _HistoryFile) -> None:
@@ -288,15 +287,7 @@ class History:
 
     def _restore_networks(self, values: Floats) -> None:
         """Give the checkpoints their networks; raises ValueError where they do not fit."""
-        if not np.isfinite(values).all():
-            raise ValueError("checkpoints that are not finite")
+        if values.ndim != 2 or values.dtype != np.float32 or not np.isfinite(values).all():
+            raise ValueError("its networks are no rows of finite numbers")
         pairs = zip(self.checkpoints, values, strict=True)
         self.checkpoints = [replace(checkpoint, values=row) for checkpoint, row in pairs]
-
-
-def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-    """Raise ValueError for an array that no history has."""
-    rows, columns = shape if len(shape) == 2 else (-1, -1)
-    few = 0 <= rows <= MOST_CHECKPOINTS and columns >= 0 and rows * columns <= _MOST_VALUES
-    if name != "values" or not few or dtype != np.float32:
-        raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")

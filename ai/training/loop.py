@@ -24,9 +24,9 @@ from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.environment import Env, Floats, StepResult
-from ai.files import count_of, inside, number_of, problem_in, read_json
+from ai.files import count_of, inside, number_of, read_json
 from ai.lander.rewards import REWARDS
-from ai.nn import ModelFormatError
+from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Measured, Run
 from ai.training.config import ANYWHERE, LANDER, Config, load_agent, presets_of
 from ai.training.gym_task import GymTask
@@ -311,18 +311,12 @@ class Training(Run):
     @classmethod
     def begun(cls, folder: Path, *, env: str | None = None, **_: Any) -> Self:
         best = load_agent(folder, env=env)[0]
-        try:
+        with reading(folder, LAST):
             last, config = load_agent(inside(folder, LAST), env=env)
+        with reading(folder, TRAINING_FILE):
             described = read_json(inside(folder, TRAINING_FILE))
             run = cls(config, count_of(described["seed"], most=10**40), since=last.decisions)
             run._go_on_from(best, last, described)
-        except OSError as error:
-            file = Path(error.filename or LAST).name
-            raise ModelFormatError(folder, [f"{file}: {error.strerror or error}"]) from error
-        except ModelFormatError:
-            raise
-        except (KeyError, TypeError, ValueError, ArithmeticError) as error:
-            raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
         return run
 
     def _go_on_from(self, best: DeepQAgent, last: DeepQAgent, described: Any) -> None:

@@ -15,7 +15,7 @@ from ai.files import atomic_folder
 from ai.nn import ModelFormatError
 from ai.run import TRAINING_FILE, Run
 from ai.training.messages import Saved, problem_of
-from ai.training.state import clear_states, going_on, read_state, write_state
+from ai.training.state import going_on, read_state, write_state
 
 if TYPE_CHECKING:
     from ai.training.history import History
@@ -29,19 +29,19 @@ R = TypeVar("R", bound=Run)
 
 
 def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
-    """Go on with a run of a kind that is kept in a folder, with the memory that its state beside that holds.
+    """Go on with a run of a kind that is kept in a folder, with the memory that its state holds.
 
     `Run.lost` says what is missing. `options` are those of `begun`: of an agent, `env` is the environment as the user
     names it, without which "module:Name" is refused. Raises ModelFormatError for anything else.
     """
     folder = Path(folder)
     run = kind.begun(folder, **options)
-    state = read_state(folder, run.moment)
+    state = read_state(folder)
     if state is not None:
         with going_on(folder):
             run.load_state(state)
     elif kind.needs_state:
-        raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
+        raise ModelFormatError(folder, "there is nothing to go on with: the run is finished, or its state is gone")
     else:
         run.lost = "its state is not there, so it goes on with an empty memory"
     return run
@@ -139,32 +139,28 @@ class Keeper:
 def _copied(
     run: Run, folder: Path, goes_on: bool, final: bool, history: History | None = None
 ) -> tuple[Callable[[], dict[str, Any]], int]:
-    """Copy what is to be kept of a run; return what writes that while training goes on.
+    """Copy what is to be kept of a run; return what writes that while training goes on, whole or not at all.
 
-    That writes the state first, then the network's folder, whole or not at all, and at last deletes the state before;
-    it returns what the training file says. Of a run that is not to go on, no state is left. Beside it
-    is returned how many bytes the state has.
+    It returns what the training file says. Beside it is returned how many bytes the state has: none of a run that is
+    not to go on.
     """
-    moment, state = run.moment, None
-    if goes_on and not run.diverged and not run.done:
-        state = run.state()
+    state = run.state() if goes_on and not run.diverged and not run.done else {}
     described, write_networks = run.snapshot(final)
     history = None if history is None else history.copy()
 
     def write() -> dict[str, Any]:
-        if state is not None:
-            write_state(folder, moment, state)
         with atomic_folder(folder, run.kind) as temporary:
             write_networks(temporary)
+            if state:
+                write_state(temporary, state)
             if history is not None:
                 history.write(temporary)
             (temporary / TRAINING_FILE).write_text(
                 json.dumps(described, indent=2, allow_nan=False) + "\n", encoding="utf-8"
             )
-        clear_states(folder, None if state is None else moment)
         return described
 
-    return write, sum(part.nbytes for part in (state or {}).values() if isinstance(part, np.ndarray))
+    return write, sum(part.nbytes for part in state.values() if isinstance(part, np.ndarray))
 
 
 def _outcome(folder: Path, writing: Future[dict[str, Any]]) -> Saved:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import in_points
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
+from ai.agent.replay import ReplayBuffer, Transition
 from ai.agent.schedule import exploration
 from ai.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander.environment import Outcome
@@ -46,9 +46,8 @@ class Flown:
 class Memory:
     """Replay buffer of a small run after a decision. Memories are counted from 0 as they come, for ever."""
 
-    cells: Transition  # the newest, as the buffer holds them
-    first: int  # number of the first of them
     oldest: int  # number of the oldest that is still held
+    newest: int  # number of the next that comes
     drawn: Ints  # numbers of those drawn in this decision's learning step; empty before the first
 
 
@@ -60,7 +59,6 @@ class SmallState:
     flights: int  # that have ended
     landed: float | None  # share of the latest `RECENT` flights; None before the first has ended
     value: float  # what the network expects of its landers' present moments, in points; the mean of all
-    epsilon: float  # share of random actions
     flown: Flown
     memory: Memory
     tested: Flown | None = None  # who fly the present network without random actions, and teach it nothing
@@ -90,10 +88,6 @@ class WatchedReplay(ReplayBuffer):
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         cells, self.drawn, weights = super().sample(count, rng)
         return cells, self.drawn, weights
-
-
-class WatchedPrioritisedReplay(WatchedReplay, PrioritisedReplayBuffer):
-    """The same, prioritised."""
 
 
 class _Landers:
@@ -132,12 +126,11 @@ class SmallRun:
         self.env = OneEngineEnv(config.num_envs, env_rng, self.plan.heights, pay)
         self.learners, tested = _Landers(self.env, RECENT), self.plan.tested
         self.tests = _Landers(OneEngineEnv(TESTED, test_rng, tested, pay), RECENT_TESTS) if tested else None
-        replay = WatchedPrioritisedReplay if config.prioritised else WatchedReplay
-        self.replay: WatchedReplay = replay(config.replay_size, self.env.num_features, config.replay_prune)
+        self.replay = WatchedReplay(config.replay_size, self.env.num_features, config.replay_prune)
         self.agent = DeepQAgent(self.env.num_features, self.env.num_actions, config, agent_rng, replay=self.replay)
         self._held: Ints = np.zeros(config.num_envs, dtype=np.intp)
         self._decisions = 0
-        self.state = self._look(1.0, self.learners.observation)
+        self.state = self._look(self.learners.observation)
 
     def _change(self) -> None:
         """Begin flights elsewhere, and drop all but the newest memories if so planned."""
@@ -145,7 +138,7 @@ class SmallRun:
         self.learners.observation, self._held = self.env.reset(), np.zeros_like(self._held)
         if self.plan.keep is not None and len(self.replay):
             old = self.replay
-            self.replay = self.agent.replay = type(old)(self.plan.keep, self.env.num_features)
+            self.replay = self.agent.replay = WatchedReplay(self.plan.keep, self.env.num_features)
             self.replay.load_state(old.state(self.plan.keep), self.env.num_actions)
             self.replay.added = old.added
 
@@ -168,18 +161,17 @@ class SmallRun:
         if self.tests:
             self.tests.take(self.tests.env.step(self.agent.act(self.tests.observation)))
         self._held = np.where(result.ended, 0, actions)
-        self.state = self._look(epsilon, result.observation)
+        self.state = self._look(result.observation)
         return self.state
 
-    def _look(self, epsilon: float, observation: Floats) -> SmallState:
+    def _look(self, observation: Floats) -> SmallState:
         values = in_points(self.agent.q_values(observation).max(axis=1), self.config.reward_scale)
         learners, tests, replay = self.learners, self.tests, self.replay
-        count, oldest = min(self.config.num_envs, len(replay)), replay.added - len(replay)
-        drawn = oldest + (replay.drawn - replay.start) % replay.capacity
-        memory = Memory(replay.at(replay.newest(count)), replay.added - count, oldest, drawn)
+        oldest = replay.added - len(replay)
+        memory = Memory(oldest, replay.added, oldest + (replay.drawn - replay.start) % replay.capacity)
         tested, passed = (tests.flown, tests.landed) if tests else (None, None)
         done, value = (self._decisions, learners.flights, learners.landed), float(values.mean())
-        return SmallState(*done, value, epsilon, learners.flown, memory, tested, passed)
+        return SmallState(*done, value, learners.flown, memory, tested, passed)
 
 
 def small_runs(

@@ -14,7 +14,7 @@ from pathlib import Path
 from threading import RLock
 from typing import Final, Generic, TypeVar
 
-from ai.files import atomic_folder, brief, move_state, recover_all, recover_folder, remove_state, take_folder
+from ai.files import atomic_folder, brief, recover_all, recover_folder, take_folder
 from game.core import texts
 
 T = TypeVar("T")
@@ -144,16 +144,14 @@ class Collection(Generic[T]):
     def _move(self, source: Path, target: Path, sentence: str, name: str) -> None:
         with _errors(sentence, name):
             source.rename(target)
-        move_state(source, target)
 
     def delete(self, name: str) -> None:
-        """Delete an item for good, with the state of a run that could go on."""
+        """Delete an item for good."""
         self._erase(self.existing(name), name)
 
     def _erase(self, folder: Path, name: str) -> None:
         with _errors(texts.NOT_DELETED, name):
             folder.unlink() if folder.is_symlink() else shutil.rmtree(folder)
-        remove_state(folder)
 
     def import_folder(self, path: Path) -> Path:
         """Copy an item into the collection, numbered if its name is taken; return the path of the copy.

@@ -78,11 +78,9 @@ def tiling(
     def height(columns: int) -> float:
         return -(-count // columns) * (((width + gap) / columns - gap) * aspect + gap) - gap
 
-    fitting = [columns for columns in range(1, count + 1) if height(columns) <= most]
-    if not fitting:  # all in one row, as high as there is room
+    columns = next((columns for columns in range(1, count + 1) if height(columns) <= most), 0)
+    if not columns:  # all in one row, as high as there is room
         return count, (count * (most / aspect + gap) - gap, most)
-    even = (columns for columns in fitting if count % columns == 0 and columns <= 1.6 * fitting[0])
-    columns = next(even, fitting[0])  # rows of one length, where that costs little
     return columns, (width, height(columns))
 
 

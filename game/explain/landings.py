@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
-from ai.lander.pilots import COAST
 from game.core import texts
 from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
@@ -72,12 +71,6 @@ class Landings:
     def lost(self) -> bool:
         """Whether no action is known to lead to a landing."""
         return not any(after in (Landing.LANDS, Landing.BRIEFLY) for after in (*self.after, self.asked[1]))
-
-    @property
-    def coasting(self) -> tuple[float, bool] | None:
-        """After how many seconds of coasting there must be a landing, and whether there is; None if unknown."""
-        after = self.after[COAST]
-        return None if after is Landing.UNKNOWN else (self.seconds, after is Landing.LANDS)
 
 
 class RecentLandings:

@@ -27,9 +27,8 @@ class Column:
     Attributes:
         units: (k,) indices of the shown units, rising.
         total: number of units in the layer.
-        values: (k,) activations; NaN where unknown or damaged.
+        values: (k,) activations; NaN where unknown.
         bias: (k,) biases; None for the inputs.
-        damaged: (k,) whether any of a unit's numbers is not finite.
 
     """
 
@@ -37,7 +36,6 @@ class Column:
     total: int
     values: Numbers
     bias: Numbers | None
-    damaged: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ def steady_choice(strength: Numbers, most: int, before: Indices | None = None) -
     """Return indices of the `most` strongest units, rising; those of `before` stay until another is much stronger."""
     if len(strength) <= most:
         return np.arange(len(strength))
-    strength = np.nan_to_num(np.asarray(strength, float), nan=np.inf, posinf=np.inf)  # damaged units must be shown
+    strength = np.array(strength, float)
     if before is not None and len(before) == most and before[-1] < len(strength):
         strength[before] *= _LOYALTY
     return np.sort(np.argsort(-strength, kind="stable")[:most])
@@ -93,16 +91,15 @@ class NetworkPlan:
     ) -> None:
         found = links(network)
         sizes = [len(found[0].weights), *(len(link.bias) for link in found)] if found else []
-        values, known = _values(network, observation, sizes)
+        values = _values(network, observation, sizes)
         old = before if before and [column.total for column in before.columns] == sizes else None
         self.columns: list[Column] = []
         for stage, size in enumerate(sizes):
             strength = _strength(found, stage)
             units = steady_choice(strength, most, old.columns[stage].units if old else None)
             shown = values[stage][units].astype(float)
-            damaged = ~np.isfinite(strength[units]) | (~np.isfinite(shown) if known else False)
             bias = found[stage - 1].bias[units].astype(float) if stage else None
-            self.columns.append(Column(units, size, shown, bias, damaged))
+            self.columns.append(Column(units, size, shown, bias))
         self._links = []
         for link, left, right in zip(found, self.columns[:-1], self.columns[1:], strict=True):
             part = np.ix_(left.units, right.units)
@@ -142,17 +139,11 @@ class NetworkPlan:
         return lit
 
 
-def _values(
-    network: NeuralNetwork, observation: npt.ArrayLike | None, sizes: Sequence[int]
-) -> tuple[list[Numbers], bool]:
-    """Return each layer's values and True; without a fitting observation, NaN for all and False."""
-    try:
-        values = [] if observation is None else traces(network, observation)
-    except ValueError:  # the observation has another shape
-        values = []
-    if sizes and [np.shape(each) for each in values] == [(size,) for size in sizes]:
-        return values, True
-    return [np.full(size, np.nan) for size in sizes], False
+def _values(network: NeuralNetwork, observation: npt.ArrayLike | None, sizes: Sequence[int]) -> list[Numbers]:
+    """Return each layer's values; without an observation, NaN."""
+    if observation is None:
+        return [np.full(size, np.nan) for size in sizes]
+    return [*traces(network, observation)]
 
 
 def _strength(found: Sequence[Link], stage: int) -> Numbers:

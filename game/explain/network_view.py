@@ -39,54 +39,45 @@ _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 
 
 class NetworkView:
-    """View of a network in a box of any size, in points. `inputs` and `outputs` are the names of its ends."""
+    """View of a network in a box of any size, in points. `inputs` and `outputs` are the names of its ends.
+
+    Attributes:
+        output_scale: one point of reward, in units of the network's outputs.
+        show: quantity that the edges show.
+        plan: what is drawn of the network; None before one was set.
+        hovered: column and place in it of the highlighted unit.
+        centres: of all units that are shown, in points.
+
+    """
 
     def __init__(self, box: pygame.typing.RectLike, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> None:
         self.box = pygame.FRect(box)
         self.inputs, self.outputs = tuple(inputs), tuple(outputs)
-        self.output_scale = 1.0  # one point of reward, in units of the network's outputs
+        self.output_scale = 1.0
+        self.show: Show = "weights"
         self.plan: NetworkPlan | None = None
-        self.edges: list[Edge] = []
-        self.reads_out = True  # whether a unit's value is written beside it while it is highlighted
-        self.redraws = 0  # number of times that the sheets were painted
-        self._show: Show = "weights"
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
-        self.hovered: tuple[int, int] | None = None  # column and place in it of the highlighted unit
-        self.centres: list[list[Point]] = []  # of all units that are shown, in points
+        self.hovered: tuple[int, int] | None = None
+        self.centres: list[list[Point]] = []
         self._canvas: Canvas | None = None  # for which the sheets were painted
         self._sheets: Sheets | None = None
         self._painting: Generator[None, None, Sheets] | None = None
-        self._stale = self._due = False
-        self._rested = 0
-
-    # What is shown
+        self._painted: tuple[Show, tuple[int, int] | None] | None = None  # what they show, and what is highlighted
+        self._stale, self._rested = False, 0
 
     @property
     def columns(self) -> list[Column]:
         """The shown columns of the network, one per layer."""
         return self.plan.columns if self.plan else []
 
-    @property
-    def show(self) -> Show:
-        """Quantity that the edges show: "weights", "activations" or "gradients"."""
-        return self._show
-
-    @show.setter
-    def show(self, show: Show) -> None:
-        if show != self._show:
-            self._show = show
-            self._pick_edges()
-            self._due = True
-
     def set(self, network: NeuralNetwork, observation: npt.ArrayLike | None = None) -> None:
         """Show a network's current state, and its activations for an observation (inputs,) already normalised."""
-        self._given = network, observation
-        self.plan = NetworkPlan(network, observation, self._most_units, self.plan)
+        self._given, self._stale = (network, observation), True
+        most = int(min(max((self.box.height - self._foot) // _PITCH, 2), _MOST_UNITS))
+        self.plan = NetworkPlan(network, observation, most, self.plan)
         self.centres = self._lay_out()
         if self.hovered and self.hovered not in self._places():
             self.hovered = None
-        self._pick_edges()
-        self._stale = True
 
     def place(self, box: pygame.typing.RectLike) -> None:
         """Move to another box; a larger one shows more of the network."""
@@ -96,20 +87,9 @@ class NetworkView:
             if self._given:
                 self.set(*self._given)
 
-    @property
-    def _most_units(self) -> int:
-        return int(min(max((self.box.height - self._foot) // _PITCH, 2), _MOST_UNITS))
-
-    def _pick_edges(self) -> None:
-        most = int(min(max(0.3 * self.box.height, 16), 110))
-        self.edges = self.plan.edges(self._show, most) if self.plan else []
-
     def hover(self, point: Point | None) -> None:
         """Highlight the unit under a point of the canvas; None for none."""
-        hovered = self.unit_at(point) if point else None
-        if hovered != self.hovered:
-            self.hovered = hovered
-            self._due = True
+        self.hovered = self.unit_at(point) if point else None
 
     def unit_at(self, point: Point) -> tuple[int, int] | None:
         """Return the column and the place in it of the unit at a point of the canvas."""
@@ -122,11 +102,10 @@ class NetworkView:
     def _places(self) -> list[tuple[int, int]]:
         return [(number, place) for number, column in enumerate(self.centres) for place in range(len(column))]
 
-    def name(self, number: int, place: int) -> str:
-        """Return the name of a unit, given its column and its place in it."""
-        unit = int(self.columns[number].units[place])
-        names = self.names(number)
-        return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=number, unit=unit + 1)
+    def unit_name(self, column: int, unit: int) -> str:
+        """Return the name of a unit, by its number in the layer."""
+        names = self.names(column)
+        return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=column, unit=unit + 1)
 
     def unit_of(self, number: int) -> float:
         """Return the divisor for a column's displayed values; outputs are shown in points of reward."""
@@ -139,11 +118,9 @@ class NetworkView:
     def update(self) -> None:
         """Advance by 1/60 s: if new sheets are due, part of them is painted."""
         self._rested += 1
-        self._due |= self._stale and self._rested >= _REST
-        if self._canvas and self._due and self._painting is None:
+        due = self._painted != (self.show, self.hovered) or (self._stale and self._rested >= _REST)
+        if self._canvas and due and self._painting is None:
             self._painting = self._paint(self._canvas)
-            self._due = self._stale = False
-            self._rested = 0
         self._go_on_painting()
 
     def _go_on_painting(self) -> None:
@@ -153,11 +130,6 @@ class NetworkView:
                 next(self._painting)
             except StopIteration as done:
                 self._sheets, self._painting = done.value, None
-
-    @property
-    def busy(self) -> bool:
-        """Whether the next step paints part of new sheets, or begins to."""
-        return self._due or self._painting is not None
 
     # Where things are, in points
 
@@ -177,16 +149,6 @@ class NetworkView:
         return SMALL if self.large else LABEL
 
     @property
-    def _sides(self) -> tuple[float, float]:
-        """Width for the names on the left and on the right, in points."""
-        size = self.name_size
-        left, right = (
-            max((typeface.reach(name, size, "regular") + 10 for name in names), default=4.0)
-            for names in (self.inputs, self.outputs)
-        )
-        return left, right
-
-    @property
     def radius(self) -> float:
         """Radius of a unit, in points."""
         crowd = max((len(column.units) for column in self.columns), default=1)
@@ -194,7 +156,11 @@ class NetworkView:
 
     def _lay_out(self) -> list[list[Point]]:
         """Return the places of each column's units, in points."""
-        (left, right), box, radius = self._sides, self.box, self.radius
+        left, right = (
+            max((typeface.reach(name, self.name_size, "regular") + 10 for name in names), default=4.0)
+            for names in (self.inputs, self.outputs)
+        )
+        box, radius = self.box, self.radius
         across = (box.width - left - right - 2 * radius) / max(len(self.columns) - 1, 1)
         high = box.height - self._foot - 2 * radius - 4
         centres = []
@@ -217,12 +183,12 @@ class NetworkView:
         light, signs = self._sheets
         canvas.surface.blit(light.surface, corner, special_flags=pygame.BLEND_RGB_ADD)
         canvas.surface.blit(signs.surface, corner)
-        if self.hovered and self.reads_out:
+        if self.hovered:
             self._draw_tooltip(canvas, *self.hovered)
 
     def _paint(self, canvas: Canvas) -> Generator[None, None, Sheets]:
         """Return the painting of the network as it is now onto new sheets."""
-        self.redraws += 1
+        self._painted, self._stale, self._rested = (self.show, self.hovered), False, 0
         light, signs = (canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN) for _ in range(2))
         light.surface = pygame.Surface(light.size)
         return _paint_all(copy(self), light, signs)
@@ -234,7 +200,7 @@ class NetworkView:
         rows = [TooltipRow(words, plotting.compact(float(column.values[place]) / unit))]
         if column.bias is not None:
             rows.append(TooltipRow(texts.NETWORK_VIEW_BIAS, plotting.compact(float(column.bias[place]) / unit)))
-        head = self.name(number, place) + (texts.NETWORK_VIEW_DAMAGED if column.damaged[place] else "")
+        head = self.unit_name(number, int(column.units[place]))
         draw_tooltip(canvas, self.centres[number][place], self.box, [head], rows)
 
 
@@ -246,9 +212,8 @@ def _paint_all(view: NetworkView, light: Canvas, signs: Canvas) -> Generator[Non
         middle = (_MARGIN + view.box.width / 2, _MARGIN + view.box.height / 2)
         signs.text(texts.NETWORK_VIEW_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=view.box.width)
         return light, signs
-    yield
     drawn = 0.0
-    for edge in view.edges:
+    for edge in plan.edges(view.show, int(min(max(0.3 * view.box.height, 16), 110))):
         ends = centres[edge.column][edge.start], centres[edge.column + 1][edge.end]
         _paint_edge(view, light, edge, ends)
         drawn += math.dist(*ends) * light.scale
@@ -257,11 +222,11 @@ def _paint_all(view: NetworkView, light: Canvas, signs: Canvas) -> Generator[Non
             yield
     yield
     best, last = plan.best(), len(centres) - 1
-    for number, column in enumerate(plan.columns):
+    for number in range(len(centres)):
         lights = plan.brightness(number).tolist()
         for place, (centre, lit) in enumerate(zip(centres[number], lights, strict=True)):
             tone = NET if number == last and place == best else INK if lit >= 0 else _TAKES
-            _paint_unit(view, light, signs, centre, abs(lit), tone, damaged=bool(column.damaged[place]))
+            _paint_unit(view, light, signs, centre, abs(lit), tone)
         _paint_names(view, signs, number, centres[number], best if number == last else None)
     if hovered:
         signs.marker("ring", centres[hovered[0]][hovered[1]], 2 * view.radius + 6, INK)
@@ -284,15 +249,10 @@ def _paint_edge(view: NetworkView, light: Canvas, edge: Edge, ends: tuple[Point,
     light.line(start, end, _dimmed(_ADDS if edge.positive else _TAKES, strength), wide)
 
 
-def _paint_unit(
-    view: NetworkView, light: Canvas, signs: Canvas, centre: Point, lit: float, tone: Colour, *, damaged: bool
-) -> None:
+def _paint_unit(view: NetworkView, light: Canvas, signs: Canvas, centre: Point, lit: float, tone: Colour) -> None:
     radius = view.radius
     signs.dot(centre, radius + 0.9, NIGHT0)
     signs.dot(centre, radius, NIGHT1)
-    if damaged:
-        signs.marker("cross", centre, 2.4 * radius, signs.palette.warn)
-        return
     if lit > _GLOWING:
         light.glow(centre, 4.2 * radius, tone, _GLOWING * lit)
     signs.dot(centre, radius, FAINT, 0.75)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 import platformdirs
@@ -31,6 +31,7 @@ EVERY: Final = 3  # steps per frame
 _AFTER: Final = 120  # updates shown after the end, while fire and dust die away
 _LINGER: Final = 60  # steps that the last frame then stays on screen
 _SAMPLE: Final = 40  # steps between the frames sampled for the palette
+Scenes = Callable[[Context, Record], Any]  # makes a replay: its `update` flies a step, its `draw_world` draws no words
 
 
 def films_dir() -> Path:
@@ -47,18 +48,8 @@ class FrameDrawn:
     share: float
 
 
-class Filmed(Protocol):
-    """Scene that shows a flight, and can draw its world without text."""
-
-    def update(self) -> object:
-        """Advance the replay by one step."""
-
-    def draw_world(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the world without text."""
-
-
 def film(
-    make: Callable[[Context, Record], Filmed], record: Record, path: Path, colour_safe: bool = False
+    make: Scenes, record: Record, path: Path, colour_safe: bool = False
 ) -> Generator[list[FrameDrawn], None, None]:
     """Write a flight, drawn by the scene from `make`, to a GIF, whole or not at all; yield after each frame.
 
@@ -84,9 +75,7 @@ def film(
         temporary.unlink(missing_ok=True)
 
 
-def frames(
-    make: Callable[[Context, Record], Filmed], record: Record, steps: Iterable[int], colour_safe: bool = False
-) -> Iterator[Frame]:
+def frames(make: Scenes, record: Record, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
     """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end.
 
     The camera stands still, as only pixels that change take room in a GIF.
@@ -111,40 +100,33 @@ def unfinished(path: Path) -> Path:
 
 
 class Export:
-    """Running export of a flight; call `poll` once a frame.
+    """Running export of a flight, which may outlive the replay that began it; call `follow` once a frame.
 
     Args:
-        scene: makes the scene to film; a class or function at module level, so that another process can import it.
-        record: the flight to export.
+        scene: makes the replay; a class or function at module level, so that another process can import it.
+        record: the flight.
         path: the file to write.
         colour_safe: whether to use the palette for colour-blind viewers.
 
     Attributes:
-        path: the file, complete once this is `over` without a `problem`.
+        path: the file, complete once the export has ended without a problem.
         share: progress, 0 to 1.
 
     """
 
-    def __init__(
-        self, scene: Callable[[Context, Record], Filmed], record: Record, path: Path, *, colour_safe: bool = False
-    ) -> None:
+    def __init__(self, scene: Scenes, record: Record, path: Path, *, colour_safe: bool = False) -> None:
         self.path, self.share = path, 0.0
         self._worker = Worker(film, scene, record, path, colour_safe)
 
-    def poll(self) -> None:
-        """Update the progress."""
+    def follow(self) -> str:
+        """Update the progress; return what came of it once it has ended, and nothing before."""
         for drawn in self._worker.poll():
             self.share = drawn.share
-
-    @property
-    def over(self) -> bool:
-        """Whether the export has ended, with or without success."""
-        return self._worker.state in (WorkerState.ENDED, WorkerState.FAILED)
-
-    @property
-    def problem(self) -> str:
-        """Reason why there is no file; empty during the export, after a cancellation and after success."""
-        return self._worker.problem
+        if self._worker.state not in (WorkerState.ENDED, WorkerState.FAILED):
+            return ""
+        self.close()
+        problem = self._worker.problem
+        return texts.EXPORT_FAILED.format(reason=problem) if problem else texts.EXPORT_DONE.format(path=self.path)
 
     def close(self) -> None:
         """Cancel the export and delete the unfinished file."""

@@ -1,29 +1,80 @@
-"""What would come of a moment if the network had the stick: six futures of it, and the last chance of a lost flight."""
+"""Where a flight goes from a moment, flown a little in every frame: a preview of its path, and six futures of it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import islice
+from functools import lru_cache
 from typing import Final
+
+import numpy as np
 
 from ai.copilot.futures import DECISION_STEPS, Flying, Lookahead, Plan
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
+from ai.lander.ground import Ground
 from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
 from ai.lander.push import KEYS
 from ai.lander.route import Route
 from engine import DT
-from game.flight.networks import Policy
+from game.flight.networks import Policy, decision_steps
 
 HELD: Final = 0.5  # seconds for which each action is held: after less, the six are hardly distinguished
 _DECISIONS: Final = round(HELD / (DECISION_STEPS * DT))
 _EVERY: Final = 2  # decisions between two places of a path
-_APART: Final = 30  # steps between two moments that are kept
+_STRIDE: Final = 6  # steps between two places of a path without thrust
+_PLACES: Final = 250  # of a preview, at most
+REACH, HEIGHT_STEP = 34.0, 0.02  # metres to both sides for which the ground's height is kept, and between two heights
+_CLEAR: Final = 0.1  # metres above the ground at which a preview ends: the touchdown itself is not predicted
+
+
+class Preview:
+    """Path of a flight under a network, or without thrust, by the physics of the flight itself but without contacts.
+
+    Finding contacts takes most of the time of a step.
+
+    Attributes:
+        path: positions (k, 2) of the latest one that was flown to the ground; empty at first.
+
+    """
+
+    def __init__(self, env: LanderEnv, policy: Policy | None = None) -> None:
+        self.path: Doubles = np.empty((0, 2))
+        self._env, self._policy = env, policy
+        self._ahead = LanderEnv(1, 0, frame_skip=decision_steps(policy) if policy else _STRIDE, ground=env.ground)
+        self._places: list[Doubles] = []
+
+    def follow(self, places: int) -> None:
+        """Predict so many places further; start again from the flight's own once the ground is reached."""
+        ahead, coasts = self._ahead, np.array([COAST])
+        for _ in range(places):
+            if not self._places:
+                Moment.of(self._env).put(ahead)
+            self._places.append(ahead.position[0].copy())
+            if self._arrived():
+                self.path, self._places = np.array(self._places), []
+                continue
+            seen = ahead.observe_for(self._policy)
+            ahead.glide(self._policy.act(seen, held=ahead.actions) if self._policy else coasts)
+
+    @property
+    def ahead(self) -> Doubles:
+        """The path without the part that the flight has already passed."""
+        passed = np.hypot(*(self.path - self._env.position[0]).T)
+        return self.path[int(passed.argmin()) :] if len(passed) else self.path
+
+    def _arrived(self) -> bool:
+        """Whether the prediction is down, which is then its last place, or outside, or long enough."""
+        ahead, limits, place = self._ahead, self._ahead.limits, self._places[-1]
+        low = surface_height(ahead, float(place[0])) + ahead.params.stand
+        if place[1] < low + _CLEAR:
+            place[1] = max(place[1], low)
+            return True
+        outside = abs(place[0]) > limits.half_width or place[1] > limits.ceiling or len(self._places) >= _PLACES
+        return bool(outside or ahead.ground.roofed(place[None])[0])
 
 
 class SixFutures:
-    """What comes of each action at one moment, flown a little in every frame; the flight itself is not touched.
+    """What comes of each action if the network then has the stick, flown ahead without touching the flight itself.
 
     Args:
         policy: the network that has the stick after half a second of the action.
@@ -38,20 +89,16 @@ class SixFutures:
     def __init__(self, policy: Policy, route: Route | None = None) -> None:
         self._lookahead = Lookahead(policy, route)
         self._flying: Flying[list[tuple[Plan, bool]]] | None = None
+        self._begun = -1  # steps of the flight at the moment begun last
         self.paths: list[Doubles] = []
         self.lands: list[bool | None] = [None] * len(KEYS)
 
-    def begin(self, env: LanderEnv) -> None:
-        """Begin at the present moment of one lander, and forget what was begun before."""
-        self._flying = self._lookahead.ways(Moment.of(env), [(0, (key,) * _DECISIONS) for key in KEYS])
-
-    @property
-    def under_way(self) -> bool:
-        """Whether a moment is being flown."""
-        return self._flying is not None
-
-    def follow(self, decisions: int) -> None:
-        """Fly some decisions further; once all have ended, paths and landings are those of the moment begun last."""
+    def follow(self, env: LanderEnv, decisions: int) -> None:
+        """Fly some decisions further; once all have ended, begin anew at the present moment, unless nothing moved."""
+        steps = int(env.steps[0])
+        if self._flying is None and self._begun != steps:
+            self._begun = steps
+            self._flying = self._lookahead.ways(Moment.of(env), [(0, (key,) * _DECISIONS) for key in KEYS])
         for _ in range(decisions):
             if self._flying is None:
                 return
@@ -63,38 +110,23 @@ class SixFutures:
                 self.lands = [landed for _, landed in end.value]
 
 
-class LastChance:
-    """Last moment of a lost flight from which the network, alone at the stick, would still have landed it.
+def surface_height(env: LanderEnv, x: float) -> float:
+    """Return the height in metres of the surface at x: a pad, a hill or the plain; for drawing, many times a frame."""
+    ground, known = _Latest.seen
+    if ground is not env.ground:
+        ground, known = _Latest.seen = env.ground, heights(env.ground)
+    if env.conditions.moves:  # one pad on a plain
+        x -= float(env.pad_shift[0])
+    return known[min(max(round((x + REACH) / HEIGHT_STEP), 0), len(known) - 1)]
 
-    Call `note` after every step, and once the flight is lost, `look` until that moment is `known`.
 
-    Attributes:
-        seconds: when it was, in seconds of the flight; None if there was none.
+class _Latest:
+    """The ground that was asked about last, and its heights: to look it up by value takes longer than the rest."""
 
-    """
+    seen: tuple[Ground | None, list[float]] = None, []
 
-    def __init__(self, policy: Policy, route: Route | None = None) -> None:
-        self._lookahead = Lookahead(policy, route)
-        self._moments: list[tuple[float, Moment]] = []
-        self._search = self._find()
-        self.known = False
-        self.seconds: float | None = None
 
-    def note(self, env: LanderEnv) -> None:
-        """Keep the present moment, now and then."""
-        if int(env.steps[0]) % _APART == 0:
-            self._moments.append((float(env.time[0]), Moment.of(env)))
-
-    def look(self, decisions: int) -> None:
-        """Fly some decisions further, from the latest moment back to the first."""
-        for _ in islice(self._search, decisions):
-            pass
-
-    def _find(self) -> Iterator[None]:
-        while self._moments and self.seconds is None:
-            seconds, moment = self._moments.pop()
-            for future in self._lookahead.look(moment, KEYS[COAST]):
-                if future and future.plan:
-                    self.seconds = seconds
-                yield
-        self.known = True
+@lru_cache(maxsize=8)
+def heights(ground: Ground) -> list[float]:
+    """Return the ground's height at even steps, `HEIGHT_STEP` metres apart, from `REACH` to the left on."""
+    return list(ground.height(np.arange(-REACH, REACH, HEIGHT_STEP)).tolist())

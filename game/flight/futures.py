@@ -1,6 +1,6 @@
 """Futures of the flight on the screen, flown ahead in a process of their own while the present decision is flown.
 
-A guardian needs to know what comes of a push at the moment at which it decides, and a future takes some ten
+A guardian needs to know what comes of a push at the moment at which it decides, and a future takes 20 to 30
 milliseconds. So while one decision is flown, the futures after it are: first of what the stick asks for now, then of
 the keys. Each moment is a request with a number; what comes late is of an older number and is left out.
 """
@@ -11,7 +11,6 @@ import os
 import sys
 from collections.abc import Generator, Iterable, Mapping
 from itertools import islice
-from math import hypot
 from typing import Final, NamedTuple
 
 from ai.agent.agent import DeepQAgent
@@ -31,24 +30,8 @@ _AT_A_TIME: Final = 8  # decisions, of less than a millisecond together, between
 _SWITCH: Final = 5e-4  # seconds after which the thread that receives requests gets its turn
 
 
-class Flyer(NamedTuple):
-    """All that a network flies by, for another process: `made` makes an agent, which is then given its values."""
-
-    made: tuple[int, int, AgentConfig]
-    values: Floats  # (parameters,)
-    normalizer: Normalizer | None
-
-    @classmethod
-    def of(cls, agent: DeepQAgent) -> Flyer:
-        """Return that of an agent."""
-        made = agent.num_features, agent.num_actions, agent.config
-        return cls(made, agent.network.values.copy(), agent.normalizer)
-
-    def agent(self) -> DeepQAgent:
-        """Return an agent that flies alike."""
-        agent = DeepQAgent(*self.made)
-        agent.restore(self.values, self.normalizer)
-        return agent
+# All that a network flies by: what makes an agent, its parameters, and what normalises its inputs; and its route.
+Flyer = tuple[tuple[int, int, AgentConfig], Floats, Normalizer | None, Route | None]
 
 
 class Request(NamedTuple):
@@ -63,7 +46,7 @@ class Request(NamedTuple):
     before: Opening
     asked: Push
     decisions: int
-    flyer: tuple[Flyer, Route | None] | None
+    flyer: Flyer | None
 
 
 class Found(NamedTuple):
@@ -99,9 +82,11 @@ class FuturesProcess:
             self._worker = _Ahead(fly_ahead)
         self._number += 1
         self._known, self._asked = {}, asked
-        same = self._flies is not None and self._flies[0] is pilot and self._flies[1] is route
+        flyer: Flyer | None = None
+        if self._flies is None or self._flies[0] is not pilot or self._flies[1] is not route:
+            made = pilot.num_features, pilot.num_actions, pilot.config
+            flyer = made, pilot.network.values, pilot.normalizer, route
         self._flies = pilot, route
-        flyer = None if same else (Flyer.of(pilot), route)
         self._worker.send(Request(self._number, moment, before, asked, decisions, flyer))
         self._poll()
 
@@ -138,8 +123,8 @@ class FuturesProcess:
 class _Order:
     """Order in which the futures of one request are flown.
 
-    What the stick asks for comes first; then the keys, those first that were `found` longest ago, by the numbers of
-    their requests, so that a panel which shows them all is up to date; among equals, those next to the stick.
+    What the stick asks for comes first. Then, for the panel that shows them all, the keys, those first that were
+    `found` longest ago, by the numbers of their requests.
 
     Attributes:
         flown: what was found, in turn, and None after each decision that was flown.
@@ -149,8 +134,7 @@ class _Order:
     def __init__(self, request: Request, lookahead: Lookahead, found: dict[Push, int]) -> None:
         self._request, self._lookahead, self._found = request, lookahead, found
         self._asked: Push | None = request.asked
-        main, side = request.asked
-        self._left = sorted(KEYS, key=lambda key: (found.get(key, 0), hypot(key.main - main, key.side - side)))
+        self._left = sorted(KEYS, key=lambda key: found.get(key, 0))
         self._guesses = False  # whether what is flown now was not asked for
         self.flown = self._fly()
 
@@ -184,8 +168,9 @@ def fly_ahead() -> Generator[Iterable[Found] | None, object, None]:
         answer = ()
         if isinstance(command, Request):
             if command.flyer:
-                flyer, route = command.flyer
-                lookahead = Lookahead(flyer.agent(), route)
+                made, values, normalizer, route = command.flyer
+                lookahead = Lookahead(agent := DeepQAgent(*made), route)
+                agent.restore(values, normalizer)
             order = _Order(command, lookahead, found)
         elif isinstance(command, Push):
             if order:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ai.agent.decision import Decision
 from ai.copilot.copilot import CoPilot, SharedDecision
-from ai.copilot.futures import DECISION_STEPS, FlownAhead, Future, Here, Opening
+from ai.copilot.futures import DECISION_STEPS, Future, Here, Opening
 from ai.copilot.guardian import decisions_of
 from ai.environment import Doubles
 from ai.flights.recording import StickHolder
@@ -23,6 +23,7 @@ from game.flight.networks import Policy
 if TYPE_CHECKING:
     from game.flight.choosers import Crew
     from game.flight.flight import Flight
+    from game.flight.futures import FuturesProcess
 
 _SHORT: Final = 8.0  # seconds before time is out, in which no network may be able to land
 _SOON: Final = 0.5  # seconds within which it must be known that no network lands, to be why no plan is held
@@ -69,7 +70,7 @@ class Guard:
 
     """
 
-    def __init__(self, crew: Crew, ahead: FlownAhead) -> None:
+    def __init__(self, crew: Crew, ahead: FuturesProcess) -> None:
         self._crew, self.ahead = crew, ahead
         self._taps = Taps()
         self.push: Push | None = None

@@ -155,7 +155,7 @@ def _fresh(name: str, folder: Path, features: int) -> Network:
     try:
         agent, _ = load_agent(folder)
     except ModelFormatError as error:
-        return Network(name, problem=brief(error.problems[0] if error.problems else error))
+        return Network(name, problem=brief(error.problem))
     except OSError as error:
         return Network(name, problem=brief(error.strerror or error))
     except Exception as error:  # a player's folder can hold anything, and none of it may end the game

@@ -33,7 +33,6 @@ class OutcomeCard:
     who: str = ""  # else flew, as the subject of a sentence
     advice: str = ""
     assists: str = ""  # what made the flight easier
-    bare: str = ""  # why help did not save a lost flight, and what would have
     score: str = ""
     medal: int = 0  # 3 for gold, 2, 1, 0 for none
     ring: bool = False  # whether it was landed together with the network

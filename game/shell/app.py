@@ -124,6 +124,9 @@ class App:
             self._guarded(self.scenes.update)
             self._guarded(lambda: self.scenes.apply(self.scan.update(self.scenes.top, self.canvas)))
             self.context.sound.update()
+            if self.context.film and (said := self.context.film.follow()):
+                self.context.film = None
+                self.notes.show(said)
         if self.scenes.running and not self.window.minimised and time_now >= self._redraw_at:
             self.draw()
             self._guarded(paint_on)
@@ -147,6 +150,8 @@ class App:
         self.settings_writer.close(self.context.settings)
         if self.context.pilot:
             self.context.pilot.close()
+        if self.context.film:
+            self.context.film.close()
         self.context.sound.close()
         self.window.close()
 

@@ -12,7 +12,7 @@ import numpy as np
 from ai.digits.training import DigitProgress
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
-from ai.files import CONFIG, state_folder
+from ai.files import CONFIG, STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
@@ -124,7 +124,7 @@ class TrainingRun:
         """Whether a run without a name was left that can be resumed; false while another runs or is ending."""
         if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
             return False
-        return self.keeps and self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
+        return self.keeps and self.collection.left_behind and (self.collection.unsaved / STATE_FILE).exists()
 
     @property
     def turns(self) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pygame
@@ -20,7 +20,6 @@ from game.drawing.tokens import VIEW_SIZE
 from game.input.controls import Controls
 
 if TYPE_CHECKING:
-    from ai.copilot.futures import FlownAhead
     from ai.pilots.own import OwnPilot
 
 
@@ -44,8 +43,9 @@ class Context:
         assets_dir: the shipped data.
         rng: random generator for every random choice.
         note: shows a short message near the top of the window for a few seconds.
-        ahead: returns what flies a guardian's futures ahead; None where nothing does.
+        ahead: returns the `game.flight.futures.FuturesProcess` of a guardian; None where there is none.
         apply_settings: applies the settings to the window and the sound, and saves them.
+        film: the `game.export.film.Export` of a flight that goes on; None while there is none.
         pilot: the player's own file that flies, once it was chosen by name in this game.
         reading: returns the window's canvas for text that flows, whose size and scale layouts go by.
 
@@ -59,8 +59,9 @@ class Context:
     controls: Controls = field(default_factory=Controls)
     sound: Sound = field(default_factory=Sound)
     note: Callable[[str], None] = _ignore
-    ahead: Callable[[], FlownAhead | None] = lambda: None
+    ahead: Callable[[], Any] = lambda: None
     apply_settings: Callable[[], None] = lambda: None
+    film: Any = None
     pilot: OwnPilot | None = None
     reading: Callable[[], Canvas] = _page
 

@@ -73,10 +73,10 @@ class WorldScene(FormScene, ABC):
         canvas, view = self.context.reading(), self.context.reading().view
         margin = min(MARGIN, _SIDES * view.width)
         left, width = margin, view.width - 2 * margin
-        hints = _HINTS * len(self.hint_rows(canvas))
+        hints = max(_HINTS * len(self.hint_rows(canvas)), canvas.row)  # a message stands in their place
         self.foot.lay_out(pygame.FRect(left, 0, width, _MOST * view.height), canvas.scale)
         height = min(self.foot.height, _MOST * view.height)
-        foot = view.bottom - hints - 2 * STEP - height
+        foot = view.bottom + canvas.row - hints - 2 * STEP - height
         self.foot.lay_out(pygame.FRect(left, foot, width, height), canvas.scale)
         self.free = pygame.FRect(0, 0, view.width, foot)
         if self.side.rows:
@@ -115,4 +115,5 @@ class WorldScene(FormScene, ABC):
             self.side.draw(canvas)
         for panel in (self.head, self.foot):
             panel.draw(canvas)
-        self.draw_hints(canvas)
+        if not canvas.row:
+            self.draw_hints(canvas)

@@ -16,7 +16,7 @@ from ai.lander.environment import LanderEnv
 from game.core.clock import STEP
 from game.drawing.paint import mix
 from game.drawing.tokens import Colour
-from game.flight.forecast import HEIGHT_STEP, REACH, heights
+from game.flight.foresight import HEIGHT_STEP, REACH, heights
 from game.world.camera import View
 
 _LEVELS: Final = 8

@@ -12,12 +12,10 @@ import pygame
 
 from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import Outcome
-from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import HUMAN, NET, Colour
 from game.flight.flight import Flight
-from game.flight.forecast import Drift, Forecast
-from game.flight.foresight import SixFutures
+from game.flight.foresight import Preview, SixFutures
 from game.flight.networks import Policy
 from game.world.camera import View
 
@@ -25,9 +23,7 @@ _SPACING, _CLEAR = 0.62, 1.6  # metres between dots, and before the first one
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
 _FINEST: Final = 40  # points of a trail that is done: it is smooth, and there are many to draw
 _STRETCH: Final = 12  # points of a trail drawn in one colour
-# After how many seconds of coasting a guardian asks for a landing, and whether there is one.
-Coasting = tuple[float, bool]
-
+_PLACES: Final = 18  # of the path without thrust in a step, so that it is complete after a few
 _FADE: Final = 0.6  # below the words at the head, in their height: where a line fades in
 
 
@@ -155,7 +151,9 @@ class PathPreview:
 
     def __init__(self, flight: Flight[Any], network: Policy | None) -> None:
         self._flight = flight
-        self.drift = Drift(flight.env)
+        self.drift = Preview(flight.env)
+        while not len(self.drift.path):
+            self.drift.follow(1)
         self._drifts = False
         self.ask(network)
 
@@ -166,7 +164,7 @@ class PathPreview:
 
     def ask(self, network: Policy | None) -> None:
         """Preview this network's path from here on; with None, only the path without input."""
-        self.forecast = Forecast(network, self._flight.env.ground) if network else None
+        self.forecast = Preview(self._flight.env, network) if network else None
 
     def follow(self, waiting: bool) -> None:
         """Extend both paths; the path without input stays the same while the craft hangs and waits."""
@@ -174,29 +172,17 @@ class PathPreview:
             return
         self._drifts = not self._drifts and not waiting  # every other step, so that no frame has all of both
         if self._drifts:
-            self.drift.follow()
+            self.drift.follow(_PLACES)
         if self.forecast:
-            self.forecast.follow(self._flight.env, 1 if self._drifts else 2)
+            self.forecast.follow(1 if self._drifts else 2)
 
-    def draw(self, canvas: Canvas, view: View, head: float, coasting: Coasting | None = None) -> None:
-        """Draw what is left of both paths, below the text in the uppermost `head` points.
-
-        A mark on the path without thrust shows where a guardian's future of `coasting` ends.
-        """
+    def draw(self, canvas: Canvas, view: View, head: float) -> None:
+        """Draw what is left of both paths, below the text in the uppermost `head` points."""
         if self._arrived:
             return
         draw_dotted(canvas, view, self.drift.path, HUMAN, head=head)
-        if coasting:
-            self._mark(canvas, view, head, *coasting)
         if self.forecast:
-            draw_dotted(canvas, view, self.forecast.path, NET, head=head)
-
-    def _mark(self, canvas: Canvas, view: View, head: float, seconds: float, lands: bool) -> None:
-        place = view.points(self.drift.after(seconds)).tolist()
-        if place[1] > canvas.view.top + head:
-            canvas.marker("circle" if lands else "cross", place, 9, NET if lands else canvas.palette.warn)
-            said = texts.EXPLAIN_COASTING_NOW["lands" if lands else "lost"].format(seconds=f"{seconds:.1f}")
-            canvas.explain((place[0] - 8, place[1] - 8, 16, 16), texts.EXPLAIN_COASTING, lambda: said)
+            draw_dotted(canvas, view, self.forecast.ahead, NET, head=head)
 
     @property
     def _arrived(self) -> bool:

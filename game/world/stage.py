@@ -17,7 +17,7 @@ from engine import Sprite
 from game.drawing.canvas import Canvas
 from game.drawing.paint import light, mix
 from game.drawing.tokens import HUMAN, NET, Colour
-from game.flight.forecast import surface_height
+from game.flight.foresight import surface_height
 from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import STAND, draw_craft, draw_fires, foot_place, scaling, shaded, stand

@@ -63,29 +63,6 @@ def test_bounce_height_is_e_squared_h():
         assert top == pytest.approx(bounce**2 * 2.0, abs=one_step), (kind, bounce, gravity)
 
 
-def test_an_impact_is_handed_on_along_a_row_of_discs():
-    for restitution, striker in ((1.0, 1.0), (0.8, 1.0), (1.0, 0.25), (0.9, 1.25)):
-        world = World(gravity=(0.0, 0.0))
-        first = world.add(Circle(0.45), (-3.0, 0.0), mass=striker, restitution=restitution)
-        discs = [world.add(Circle(0.45), (0.91 * k, 0.0), restitution=restitution) for k in range(6)]
-        first.velocity = (3.0, 0.0)
-        while not discs[-1].velocity.any():
-            world.step()
-        handed = 3.0 * 2 * striker / (striker + 1) * ((1 + restitution) / 2) ** 6
-        assert discs[-1].velocity[0, 0] == pytest.approx(handed, rel=1e-6), (restitution, striker)
-
-
-def test_a_perfectly_elastic_ball_comes_back_to_its_height_again_and_again():
-    world = World(gravity=(0.0, -9.81))
-    world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
-    ball = world.add(Circle(0.5), (0.0, 4.5), restitution=1.0)
-    height = []
-    for _ in range(1500):
-        world.step()
-        height.append(ball.position[0, 1])
-    assert max(height[1250:]) == pytest.approx(4.5, abs=0.01)
-
-
 @given(st.integers(0, 10**6), st.sampled_from([0.0, 0.3, 1.0]))
 @settings(max_examples=30, deadline=None)
 def test_any_impact_keeps_momentum_and_adds_no_energy(seed, friction):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import Circle, Polygon, World
-from tests.engine.test_batch import STATE, assert_same
+from tests.engine.test_batch import assert_same
 from tests.support.worlds import advance
 
 BOX = Polygon.box(1.0, 1.0)
@@ -33,10 +33,10 @@ def test_a_stack_stands_asleep_and_awake():
     for sleeping in (True, False):
         world = tower(height=3, sleeping=sleeping)
         start = world.state.pose.copy()
-        advance(world, 500)
+        advance(world, 240)
         assert world.asleep[:, 1:].all() == world.asleep.any() == sleeping
         then = world.state.pose.tobytes()
-        advance(world, 500)
+        advance(world, 120)
         assert (world.state.pose.tobytes() == then) >= sleeping  # asleep, not by a bit
         assert abs(world.state.pose - start).max() < 0.02
         assert abs(world.state.velocity).max() < (1e-300 if sleeping else 1e-6)
@@ -77,59 +77,27 @@ def test_a_sleeping_stack_wakes_by(subtests):
             assert world.state.pose == pytest.approx(awake.state.pose, abs=0.01), "as one that has never slept"
 
 
-def test_a_sleeping_stack_wakes_by_a_hit_and_moves_as_if_it_had_never_slept():
-    worlds = [tower(height=4), tower(height=4, sleeping=False)]
-    for world in worlds:
-        world.bodies[-1].position = (-8.0, 3.0)
-        advance(world, 120)
-        world.bodies[-1].set(position=(-3.0, 0.5), velocity=(6.0, 0.0))
-    assert worlds[0].asleep[0, 1:-1].all()
-    worlds[0].step()
-    assert worlds[0].asleep[0].tolist() == [False, True, True, True, False]
-    advance(worlds[0], 29)
-    assert not worlds[0].asleep[0, 1:].any()
-    advance(worlds[1], 30)
-    assert worlds[0].state.velocity == pytest.approx(worlds[1].state.velocity, abs=0.02)
-    advance(worlds[0], 30)
-    assert worlds[0].bodies[1].position[0, 0] > 0.05
-
-
-def test_only_what_touches_wakes_and_a_body_added_wakes_what_it_falls_on():
+def test_what_touches_wakes_or_leaves_and_nothing_else():
     world = tower(height=2)
     for row in range(2):
         world.add(BOX, (4.0, 0.5 + row))
+    stone = world.add(BOX, (0.0, 3.0))
+    stone.active = False
     advance(world, 120)
     world.bodies[4].apply_force((0.0, 30.0))
     world.step()
-    assert world.asleep[0].tolist() == [False, True, True, False, False]
+    assert world.asleep[0].tolist() == [False, True, True, False, False, False]
     advance(world, 60)
-    world.add(BOX, (0.0, 3.0))
-    assert world.asleep[0].tolist() == [False, True, True, True, True, False]
-    while world.contacts.body.max() != 5:
+    stone.active = True
+    while world.contacts.body.max() != stone.index:
         world.step()
     assert world.asleep[0].tolist() == [False, False, False, True, True, False]
     advance(world, 200)
     assert world.asleep[0, 1:].all()
-    assert world.bodies[5].position[0, 1] == pytest.approx(2.5, abs=0.02)
-
-
-def test_a_body_laid_onto_a_sleeping_one_wakes_it_and_a_moved_wall_too():
-    world = tower(height=1)
-    wall = world.add(BOX, (6.0, 0.5), static=True)
-    box = world.add(BOX, (3.0, 3.0))
-    box.active = False
-    advance(world, 90)
-    assert world.asleep[0].tolist() == [False, True, False, False]
-    box.set(position=(0.2, 1.499), velocity=(0.0, 0.0))
-    box.active = True
+    assert stone.position[0, 1] == pytest.approx(2.5, abs=0.02)
+    world.add(BOX, (9.0, 0.5))
     world.step()
-    assert not world.asleep[0, 1]
-    box.active = False
-    advance(world, 90)
-    assert world.asleep[0, 1]
-    wall.position = (0.9, 0.5)
-    advance(world, 30)
-    assert world.bodies[1].position[0, 0] < -0.05
+    assert not world.asleep.any(), "with a body more, all begins awake"
 
 
 def test_all_can_be_woken_and_another_gravity_wakes_its_own_worlds():
@@ -151,15 +119,14 @@ def test_what_floats_creeps_or_rides_is_never_stopped():
     assert lonely.position[0, 0] == pytest.approx(0.02)
     assert pair[0].velocity.tolist() == [[0.0, 0.0]]
 
-    for speed in (0.005, 0.0005):
-        lift = World(gravity=(0.0, -9.81))
-        plate = lift.add(Polygon.box(4.0, 0.5), (0.0, 0.0), static=True)
-        plate.velocity = (0.0, speed)
-        rider = lift.add(BOX, (0.0, 0.75))
-        for _ in range(300):
-            lift.step()
-            assert not lift.asleep.any()
-        assert rider.position[0, 1] == pytest.approx(0.75 + 5 * speed, abs=0.006)
+    lift = World(gravity=(0.0, -9.81))
+    plate = lift.add(Polygon.box(4.0, 0.5), (0.0, 0.0), static=True)
+    plate.velocity = (0.0, 0.005)
+    rider = lift.add(BOX, (0.0, 0.75))
+    for _ in range(300):
+        lift.step()
+        assert not lift.asleep.any()
+    assert rider.position[0, 1] == pytest.approx(0.75 + 5 * 0.005, abs=0.006)
 
 
 def test_what_slides_ever_faster_is_not_stopped_however_slowly_it_begins():
@@ -170,20 +137,7 @@ def test_what_slides_ever_faster_is_not_stopped_however_slowly_it_begins():
     assert box.velocity[:, 0] == pytest.approx([0.06, 0.15, 0.6], rel=1e-6)
 
 
-@pytest.mark.parametrize("mass", [1.0, 50.0])
-def test_what_is_pulled_however_weakly_does_not_sleep(mass):
-    world = World(gravity=(0.0, -9.81))
-    world.add(Polygon.box(40.0, 1.0), (0.0, -0.5), static=True, friction=0.0)
-    box = world.add(BOX, (0.0, 0.5), mass=mass, friction=0.0)
-    seconds = 20
-    for _ in range(60 * seconds):
-        box.apply_force((0.001, 0.0))
-        world.step()
-        assert not world.asleep.any()
-    assert box.velocity[0, 0] == pytest.approx(0.001 / mass * seconds, rel=1e-6)
-
-
-@pytest.mark.parametrize("pull", [0.0005, 0.002, 0.01, 0.05])
+@pytest.mark.parametrize("pull", [0.0005, 0.01])
 def test_what_stands_at_its_turning_point_does_not_sleep(pull):
     world = World(gravity=(-pull, -9.81))  # a floor that slopes a little, without friction
     world.add(Polygon.box(40.0, 1.0), (0.0, -0.5), static=True, friction=0.0)
@@ -232,32 +186,20 @@ def heap(seed):
     return world
 
 
-def islands(world):
-    """Bodies that touch, and those that they touch in turn: the obvious way, one pair after another."""
-    group = {body.index: {body.index} for body in world.bodies if not body.static}
-    for a, b in world.contacts.body.tolist():
-        if a in group and b in group and group[a] is not group[b]:
-            group[a] |= group[b]
-            for each in group[b]:
-                group[each] = group[a]
-    return group.values()
-
-
 def test_a_heap_comes_to_rest_and_sleeps_island_by_island():
     world = heap(0)
     for _ in range(600):
         world.step()
-        for island in islands(world) if world.contacts else ():
-            slept = world.asleep[0, sorted(island)]
-            assert slept.all() or not slept.any()
+        for pair in world.contacts.body[(world.contacts.body > 2).all(axis=1)] if world.contacts else ():
+            assert world.asleep[0, pair[0]] == world.asleep[0, pair[1]]
     assert world.asleep[0, 3:].all()
     assert np.where(world.contacts.valid, world.contacts.depth, 0.0).max() < 0.02
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(data=st.data())
 def test_worlds_that_sleep_and_wake_in_a_batch_are_the_same_alone(data):
-    batch = 3
+    batch = 2
     many, few = tower(batch=batch), [tower() for _ in range(batch)]
     for row in range(batch):
         aside = data.draw(st.floats(-0.1, 0.1))
@@ -280,33 +222,3 @@ def test_worlds_that_sleep_and_wake_in_a_batch_are_the_same_alone(data):
                 alone.step()
                 assert_same(many, alone, [row])
                 assert many.asleep[row].tolist() == alone.asleep[0].tolist()
-
-
-def test_a_recalled_memory_brings_sleep_back_too():
-    world = advance(tower(height=4, batch=2), 20)
-    world.bodies[2].set(velocity=(0.5, 0.0), mask=np.array([True, False]))
-    advance(world, 35)
-    state = {name: getattr(world.state, name).copy() for name in STATE}
-    memory, slept = world.memory(), world.asleep
-    advance(world, 60)
-    first = world.state.pose.copy()
-    for name, value in state.items():
-        setattr(world.state, name, value)
-    world.recall(memory)
-    assert np.array_equal(world.asleep, slept)
-    advance(world, 60)
-    assert world.state.pose.tobytes() == first.tobytes()
-
-
-def test_without_gravity_a_stack_stays_where_it_is():
-    for sleeping in (True, False):
-        world = World(gravity=(0.0, -9.81), sleeping=sleeping, batch=2)
-        world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
-        for i in range(5):
-            world.add(Polygon.box(1.0, 1.0), (0.05 * (i % 2), 0.5 + i))
-        advance(world, 300)
-        assert world.asleep[:, 1:].all() == sleeping
-        before = world.state.pose.copy()
-        world.gravity = np.array([[0.0, 0.0], [0.0, -9.81]])
-        advance(world, 120)
-        assert np.abs(world.state.pose - before).max() < 1e-3, sleeping

@@ -6,7 +6,6 @@ import pytest
 from engine import Polygon, World
 from engine.constraints import Constraints
 from tests.engine.test_batch import landers, throw, toys
-from tests.support.worlds import advance
 
 
 def flight(make, seed, steps, batch=3):
@@ -28,18 +27,6 @@ def test_iterations_that_are_left_out_would_have_changed_no_bit(make, steps, mon
         for a, b in zip(mine, theirs, strict=True):
             assert np.array_equal(a, b)
     assert any(len(impulse) for _, _, impulse in early)
-
-
-def test_the_solver_stops_when_nothing_changes_any_more(monkeypatch):
-    calls = []
-    world = World(gravity=(0.0, -9.81), sleeping=False)
-    world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
-    world.add(Polygon.box(1.0, 1.0), (0.0, 0.5))
-    advance(world, 120)
-    relax = Constraints.relax
-    monkeypatch.setattr(Constraints, "relax", lambda *given: calls.append(1) or relax(*given))
-    world.step()
-    assert 0 < len(calls) <= 2
 
 
 def test_of_points_that_nearly_coincide_the_deeper_does_alone():

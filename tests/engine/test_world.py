@@ -157,8 +157,7 @@ def test_no_setter_takes_what_makes_no_sense():
         "torque": lambda: body.apply_torque(-np.inf),
         "gravity must be finite": lambda: setattr(world, "gravity", (0.0, nan)),
         "gravity must be of shape": lambda: setattr(world, "gravity", np.zeros((3, 2))),
-        "whole number of iterations": lambda: setattr(world, "iterations", 0),
-        "whole number of iterations, at least 1, not nan": lambda: World(iterations=nan),
+        "iterations": lambda: World(iterations=0),
         "at least one shape": lambda: World().add([], (0, 0)),
         "batch": lambda: World(batch=0),
         "inverse_mass": lambda: replace(params, inverse_mass=np.array([[nan, nan, 1.0]])),
@@ -205,13 +204,3 @@ def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
         box.velocity = (1.0, 0.0)
         advance(floored, 60)
         assert box.velocity[0, 0] == pytest.approx(1.0 - rubs, abs=1e-3)
-
-
-def test_contacts_name_the_bodies_from_a_to_b():
-    world = floor()
-    world.add(BOX, (0, 0.5))
-    advance(world, 2)
-    contacts = world.contacts
-    assert sorted(contacts.body[0].tolist()) == [0, 1]
-    upwards = contacts.normal[0, 1] * (contacts.body[0, 1] - contacts.body[0, 0])
-    assert upwards == pytest.approx(1.0)

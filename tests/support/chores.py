@@ -139,7 +139,7 @@ def eager(config, seed, keep):
     yield from LanderSession.live(config, seed, keep=keep)
 
 
-def biased_fix(folder, image, digit, keep, before=None):
+def biased_fix(folder, image, digit, keep):
     """In place of `ai.digits.fix.fix`: keeps a network that finds the digit everywhere."""
     from ai.digits.classifier import DigitClassifier
     from ai.digits.fix import Fixed, FixStep
@@ -149,7 +149,7 @@ def biased_fix(folder, image, digit, keep, before=None):
     last: Any = classifier.network.layers[-1]
     last.bias[digit] += 50
     classifier.save(keep)
-    yield [Fixed(digit, (0.1, 1.0), (before or 0.9, 0.1), 1, keep)]
+    yield [Fixed(digit, (0.1, 1.0), (0.9, 0.1), 1, keep)]
 
 
 def keep(notebook: Path, name: str, seconds: float):

@@ -136,7 +136,8 @@ def frame(number: int) -> Happens:
 
 def contacts(driver: Driver) -> None:
     """Show an exhibit's contacts."""
-    driver.key(pygame.K_c)
+    driver.press_on(texts.MORE[0])
+    driver.press_on(texts.PHYSICS_CONTACTS)
     driver.skip(130)
 
 
@@ -167,9 +168,9 @@ def tried(*labels: str, steps: int) -> Happens:
     return try_it
 
 
-def inside(steps: int, driver: Driver) -> None:
-    """Follow a unit some steps on."""
-    driver.keys(*[pygame.K_n] * steps)
+def inside(stage: int, driver: Driver) -> None:
+    """Follow a unit to another stage."""
+    driver.top.sums.choose(stage)
     driver.frames(5)
 
 
@@ -217,7 +218,7 @@ STATES = [
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
     Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),
-    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
+    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 9)),
     Stop("modern inside", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))

@@ -7,6 +7,7 @@ from typing import Final
 
 import pygame
 
+from ai.digits.classifier import DIGITS
 from game.core import texts
 from game.core.scene import Transition
 from game.digits import certainty
@@ -18,10 +19,8 @@ from game.scenes.digits.reader import LEAST_INK, Reading, Verdict, best_two
 from game.training.library import called
 from game.ui.widget import RowWidget, mix
 
-_DIGITS: Final = 10
 _ROW: Final = 22.0
-_EASE: Final = 0.4
-LARGE, _SMALL = 124.0, 48.0  # sizes of a digit
+_LARGE, _SMALL = 124.0, 48.0  # sizes of a digit
 _HEIGHT: Final = 128.0
 _INDENT: Final = 20.0  # of words after a mark
 
@@ -31,8 +30,7 @@ class DigitBars(RowWidget):
 
     Attributes:
         digit: the digit that the keys are at, or that was taken last.
-        values: probabilities of the chosen network and of another, 0 to 1, digit by digit.
-        best: the answer, in whose line the bar is lit; None for none.
+        values: probabilities, 0 to 1, digit by digit; the bar of the largest is lit.
 
     """
 
@@ -41,9 +39,7 @@ class DigitBars(RowWidget):
     def __init__(self, press: Callable[[int], Transition | None], digit: int = 0) -> None:
         super().__init__((0, 0, 1, 1), texts.HINT_DIGIT)
         self._on_press, self.digit = press, digit
-        self.values = [(0.0, 0.0)] * _DIGITS
-        self.shown = [(0.0, 0.0)] * _DIGITS  # eased
-        self.best: int | None = None
+        self.values = [0.0] * DIGITS
 
     def place(self, digit: int) -> pygame.FRect:
         """Return the box of a digit's line, in points."""
@@ -52,59 +48,33 @@ class DigitBars(RowWidget):
     def press(self) -> Transition | None:
         if not self.ringed:
             mouse = self.ui_manager.get_mouse_position()
-            self.digit = next((each for each in range(_DIGITS) if self.place(each).collidepoint(mouse)), self.digit)
+            self.digit = next((each for each in range(DIGITS) if self.place(each).collidepoint(mouse)), self.digit)
         return self._on_press(self.digit)
 
     def take(self, event: pygame.event.Event) -> bool:
         step = {Command.UP: -1, Command.DOWN: 1}.get(command) if (command := translate(event)) else None
-        if step is None or not 0 <= self.digit + step < _DIGITS:
+        if step is None or not 0 <= self.digit + step < DIGITS:
             return False
         self.digit += step
         return True
 
     def advance(self) -> None:
         """Go to the next digit, and after the last to the first."""
-        self.digit = (self.digit + 1) % _DIGITS
-
-    def ease(self, at_once: bool) -> None:
-        super().ease(at_once)
-        part = 1.0 if at_once else _EASE
-        self.shown = [
-            (one + (to_one - one) * part, other + (to_other - other) * part)
-            for (one, other), (to_one, to_other) in zip(self.shown, self.values, strict=True)
-        ]
+        self.digit = (self.digit + 1) % DIGITS
 
     def write(self, cursor: Cursor) -> None:
-        box = cursor.take(_DIGITS * _ROW)
+        box = cursor.take(DIGITS * _ROW)
         if (canvas := cursor.canvas) is None:
             return
-        left, width = box.left + 30, box.width - 30
-        for digit, (one, other) in enumerate(self.shown):
-            y = box.top + (digit + 0.5) * _ROW
+        for digit, value in enumerate(self.values):
+            y, best = box.top + (digit + 0.5) * _ROW, value and value == max(self.values)
             lit = digit == self.digit and self.ringed
-            colour = INK if digit == self.best else mix(MUTE, INK, self.warmth if lit else 0.0)
+            colour = INK if best else mix(MUTE, INK, self.warmth if lit else 0.0)
             if lit and self.focused:
                 canvas.marker("triangle", (box.left - 10, y), 7, HUMAN)
             canvas.text(str(digit), (box.left, y + 5), colour=colour, tabular=True)
-            canvas.bar((left, y - 2, width, 4), one if one > 0.01 else 0, NET if digit == self.best else MUTE)
-            if other > 0.01:
-                canvas.pill((left, y + 5, max(width * other, 2), 2), MUTE, 0.8)
-
-
-def write_large(cursor: Cursor, words: str, colour: Colour = INK) -> pygame.FRect:
-    """Write a digit, large; return its box."""
-    box = cursor.take(_HEIGHT)
-    if cursor.canvas:
-        at = (box.left - 6, box.bottom - 20)
-        cursor.canvas.text(words, at, size=LARGE, weight="extralight", colour=colour)
-    return box
-
-
-def write_marked(cursor: Cursor, sign: Shape, words: str, colour: Colour) -> None:
-    """Write words after a mark of the same colour."""
-    if cursor.canvas:
-        cursor.canvas.marker(sign, (cursor.left + 5, cursor.y + LEADING * TEXT / 2), 10, colour)
-    cursor.styled(words, TEXT, colour, indent=_INDENT, tabular=True)
+            bar = (box.left + 30, y - 2, box.width - 30, 4)
+            canvas.bar(bar, value if value > 0.01 else 0, NET if best else MUTE)
 
 
 def write_legend(cursor: Cursor, words: Iterable[tuple[str, Colour]]) -> None:
@@ -128,20 +98,26 @@ def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:
     first, second = best_two(reading.probabilities[name])
     share, other = (certainty(float(reading.probabilities[name][digit])) for digit in (first, second))
     sure = verdict is not Verdict.UNSURE
-    box = write_large(cursor, str(first) if sure else "?", INK if sure else MUTE)
+    box = cursor.take(_HEIGHT)
+    if canvas := cursor.canvas:
+        words, colour = (str(first), INK) if sure else ("?", MUTE)
+        canvas.text(words, (box.left - 6, box.bottom - 20), size=_LARGE, weight="extralight", colour=colour)
     _write_others(cursor, box, reading, name)
     palette = cursor.palette
-    sign, words, colour = {
+    marks: dict[Verdict, tuple[Shape, str, Colour]] = {
         Verdict.SURE: ("check", texts.DIGITS_SURE, palette.good),
         Verdict.LIKELY: ("ring", texts.DIGITS_LIKELY, INK),
         Verdict.DISPUTED: ("ring", texts.DIGITS_DISPUTED, INK),
         Verdict.UNSURE: ("triangle", texts.DIGITS_UNSURE, palette.warn),
-    }[verdict]
-    write_marked(cursor, sign, words.format(percent=share), colour)  # type: ignore[arg-type]
+    }
+    sign, words, colour = marks[verdict]
+    if canvas:
+        canvas.marker(sign, (cursor.left + 5, cursor.y + LEADING * TEXT / 2), 10, colour)
+    cursor.styled(words.format(percent=share), TEXT, colour, indent=_INDENT, tabular=True)
     if sure:
         shown = reading.probabilities[name][second] >= 0.005
         cursor.aside(texts.DIGITS_OR.format(digit=second, percent=other) if shown else "")
-    elif reading.stages.centred.sum() < LEAST_INK:
+    elif reading.image.sum() < LEAST_INK:
         cursor.aside(texts.DIGITS_TOO_LITTLE)
     else:
         cursor.aside(texts.DIGITS_EITHER.format(digit=first, percent=share, other=second, other_percent=other))
@@ -155,8 +131,7 @@ def _write_others(cursor: Cursor, box: pygame.FRect, reading: Reading, name: str
         first, _ = best_two(reading.probabilities[other])
         sure = reading.verdict(other) is not Verdict.UNSURE
         words = certainty(float(reading.probabilities[other][first])) if sure else texts.DIGITS_UNSURE
-        label = canvas.text(called(other), (box.right, box.top + 34), size=LABEL, colour=MUTE, align="right")
-        canvas.pill((label.left - 22, box.top + 29, 16, 2), MUTE)  # as thin as that network's bars below
+        canvas.text(called(other), (box.right, box.top + 34), size=LABEL, colour=MUTE, align="right")
         figure = str(first) if sure else "?"
         canvas.text(figure, (box.right, box.bottom - 38), size=_SMALL, weight="light", colour=MUTE, align="right")
         canvas.text(words, (box.right, box.bottom - 16), size=SMALL, colour=MUTE, align="right", tabular=True)

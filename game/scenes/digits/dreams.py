@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -33,8 +32,8 @@ _FAINTEST: Final = 0.3  # least peak brightness for scaling: dimmer images stay 
 class DreamsTab:
     """Dreams of all ten digits, which go on a step a frame."""
 
-    def __init__(self, context: Context, classifier: DigitClassifier, build: Callable[[], None]) -> None:
-        self._context, self._classifier, self._build = context, classifier, build
+    def __init__(self, context: Context, classifier: DigitClassifier) -> None:
+        self._context, self._classifier = context, classifier
         self.restart()
 
     def restart(self) -> None:

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import shutil
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from ai.digits.fix import Fixed, FixStep, fix
 from ai.digits.preprocessing import Image
-from ai.digits.training import read_summary
-from ai.files import CONFIG
-from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.training.library import models_by_name
@@ -58,22 +54,15 @@ class FixRunner:
         """Return the folder of the named network with all its fixes."""
         return self.networks[name].versions()[0]
 
-    def count(self, name: str) -> int:
-        """Return the number of fixes that can be undone."""
-        return len(self.networks[name].fixed())
-
-    def begin(self, name: str, image: Image, digit: int, source: Path | None = None) -> bool:
-        """Begin to teach a network that an image (28, 28) is that digit; return False while another fix runs.
-
-        `source` is the folder that the network was read from, where the last fix is damaged.
-        """
+    def begin(self, name: str, image: Image, digit: int) -> bool:
+        """Begin to teach a network that an image (28, 28) is that digit; return False while another fix runs."""
         if self.busy:
             return False
         self.step = self.fixed = None
         self.name, self.digit, self.problem = name, digit, ""
-        network, folder = self.networks[name], source or self.folder(name)
+        network = self.networks[name]
         number = int(network.fixed()[-1].name) + 1 if network.fixed() else 1
-        self._worker = Worker(fix, folder, image, digit, network.fixes / f"{number:04}", before=_accuracy(folder))
+        self._worker = Worker(fix, self.folder(name), image, digit, network.fixes / f"{number:04}")
         self._worker.patience = DIGITS.patience
         return True
 
@@ -117,12 +106,3 @@ class FixRunner:
         if self._worker:
             self._worker.close(grace)
         self._worker, self.step = None, None
-
-
-def _accuracy(folder: Path) -> float | None:
-    """Return the test accuracy stored in a network's folder; None if there is none."""
-    for file in (CONFIG, TRAINING_FILE):  # of a fix, and of a training
-        with suppress(OSError, ValueError):
-            if (test := read_summary(folder, file).test) is not None:
-                return test
-    return None

@@ -33,9 +33,9 @@ class DigitInsideScene(PanelScene):
     def __init__(self, context: Context, classifier: DigitClassifier, image: Image) -> None:
         super().__init__(context)
         image = np.asarray(image, np.float32)
-        self.why_not = WhyNotTab(context, classifier, image, self.build)
-        self.sums = SumsTab(context, classifier, image, self.build)
-        self.dreams = DreamsTab(context, classifier, self.build)
+        self.why_not = WhyNotTab(classifier, image, self.build)
+        self.sums = SumsTab(classifier, image, self.build)
+        self.dreams = DreamsTab(context, classifier)
         self.tab: WhyNotTab | SumsTab | DreamsTab = self.why_not
         self.build()
 

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.digits.preprocessing import Image
+from ai.digits.classifier import DIGITS
+from ai.digits.preprocessing import Image, stages
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import certainty
@@ -16,7 +17,7 @@ from game.digits.pictures import AMBER, Numbers, framed, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import HUMAN, LINE, MUTE, NIGHT0, SMALL, TITLE
+from game.drawing.tokens import HUMAN, LINE, MUTE, SMALL, TITLE
 from game.input.controls import Command
 from game.scenes.digits.answer import DigitBars, write_answer, write_legend
 from game.scenes.digits.fixing import FixRunner
@@ -31,7 +32,6 @@ from game.ui.panel_scene import PanelScene
 _LEAST, _APART = 170.0, 32.0  # points: the narrowest pad that stands beside its answer, and between the two
 _ANSWER: Final = 130.0  # points for the answer beside its reasons
 _MORE: Final = "digits"  # name in the settings of what stays open
-_LONGEST: Final = 16  # letters of a network's name
 _WHY: Final = 300.0  # side of a picture
 _TILE: Final = 52.0
 
@@ -49,15 +49,14 @@ class DigitsScene(PanelScene):
     def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
         super().__init__(context)
         self.pad = DrawingPad()
-        self.live = LiveReading(self.pad, chosen, self._show_bars)
-        self._bars = DigitBars(self._correct)
+        self.live = LiveReading(self.pad, chosen)
         self._why, self._stages = PaintCache(), PaintCache()
         self._fix_of = -1  # revision of the drawing that was fixed last
         self.fixing = FixRunner(context.user_dir, context.models_dir)
         for name in dict.fromkeys((*NAMES, chosen)):
             self._load(name)
-        if not self.live.known:
-            self.live.chosen = next(iter(self.live.reader.classifiers), chosen)
+        if chosen not in self.live.classifiers:
+            self.live.chosen = next(iter(self.live.classifiers), chosen)
         self._take_anew()
 
     def enter(self) -> None:
@@ -114,6 +113,7 @@ class DigitsScene(PanelScene):
         if self.fixing.poll():
             self._load(self.fixing.name)
             self._take_anew()
+        self._bars.values = self.reading.probabilities[self.chosen].tolist() if self._drawn else [0.0] * DIGITS
         return super().update()
 
     # Rows
@@ -130,23 +130,19 @@ class DigitsScene(PanelScene):
         ])  # fmt: skip
         answer, why = right.beside((22, 33), least=_ANSWER, apart=24.0)
         answer.add(self._write_answer)
-        shown = self._bars.shown
         self._bars = answer.widget(DigitBars(self._correct))
-        self._bars.shown = shown
-        self._show_bars()
         answer.add(self._write_fix)
-        if self.chosen in self.fixing.networks and self.fixing.count(self.chosen):
+        if self.chosen in self.fixing.networks and self.fixing.networks[self.chosen].fixed():
             answer.button(texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL)
         why.add(self._write_why)
         if self._more:
             self._describe_more(why)
 
     def _describe_more(self, column: Column) -> None:
-        reader = self.live.reader
-        names = [name for name in self.fixing.networks if name in reader.classifiers or name not in reader.problems]
-        words = [word if len(word) <= _LONGEST else word[:_LONGEST] + "…" for word in map(called, names)]
+        live = self.live
+        names = [name for name in self.fixing.networks if name in live.classifiers or name not in live.problems]
         index = names.index(self.chosen) if self.chosen in names else 0
-        column.choice(texts.DIGITS_READER, words, index, lambda index: self._choose(names[index]))
+        column.choice(texts.DIGITS_READER, list(map(called, names)), index, lambda index: self._choose(names[index]))
         column.gap()
         column.caption(texts.DIGITS_SEES)
         column.picture(_TILE, self._draw_stages)
@@ -159,13 +155,10 @@ class DigitsScene(PanelScene):
         self.context.unfold(_MORE)
         self.build()
 
-    def _show_bars(self) -> None:
-        self._bars.values, self._bars.best = self.live.bars()
-
     def _write_answer(self, cursor: Cursor) -> None:
         if self.chosen in self.reading.probabilities:
             write_answer(cursor, self.reading, self.chosen)
-        for name, problem in self.live.reader.problems.items():
+        for name, problem in self.live.problems.items():
             cursor.styled(texts.DIGITS_PROBLEM.format(name=called(name), problem=problem), SMALL, cursor.palette.warn)
 
     def _write_fix(self, cursor: Cursor) -> None:
@@ -194,14 +187,14 @@ class DigitsScene(PanelScene):
 
     def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
         reading, tile = self.reading, min(_TILE, box.width / 6)
-        self._stages.draw(canvas, box, reading, lambda sheet: _paint_stages(sheet, reading, tile))
+        self._stages.draw(canvas, box, reading, lambda sheet: _paint_stages(sheet, self.pad.ink(), reading.image, tile))
 
     # Networks
 
     def _load(self, name: str) -> None:
         """Load a network with the player's fixes, or with fewer of them if some are damaged."""
         if network := self.fixing.networks.get(name):
-            self.live.reader.load(name, *network.versions())
+            self.live.load(name, *network.versions())
 
     def _take_anew(self) -> None:
         """Read the drawing with networks that have changed, and show what can be done with them."""
@@ -210,18 +203,17 @@ class DigitsScene(PanelScene):
 
     def _choose(self, name: str) -> None:
         """Choose another network; if it can't be loaded, the last one stays."""
-        if name not in self.live.reader.classifiers:
+        if name not in self.live.classifiers:
             self._load(name)
-        if name in self.live.reader.classifiers:
+        if name in self.live.classifiers:
             self.live.chosen = name
         self._take_anew()
 
     def _correct(self, digit: int) -> None:
         """Teach the chosen network that what is drawn is this digit."""
         self.live.catch_up()
-        image = self.reading.stages.centred
-        if image.any() and self.live.known:
-            self.fixing.begin(self.chosen, image, digit, self.live.reader.sources[self.chosen])
+        if self._drawn:
+            self.fixing.begin(self.chosen, self.reading.image, digit)
             self._fix_of = self.pad.revision
 
     def _undo_fix(self) -> None:
@@ -234,7 +226,7 @@ class DigitsScene(PanelScene):
         if self.probabilities is None:
             self.context.note(texts.DIGITS_EMPTY)
             return None
-        return push("digit_inside", self.live.reader.classifiers[self.chosen], self.reading.stages.centred)
+        return push("digit_inside", self.live.classifiers[self.chosen], self.reading.image)
 
 
 def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
@@ -254,25 +246,12 @@ def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
     return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
 
 
-def _paint_stages(sheet: Canvas, reading: Reading, tile: float) -> None:
-    for number, image in enumerate(reading.stages):
+def _paint_stages(sheet: Canvas, ink: Image, read: Image, tile: float) -> None:
+    """Draw how ink is prepared, and last what the network reads."""
+    for number, image in enumerate((*stages(ink)[:-1], read)):
         area = sheet.rect(1.2 * number * tile, 0, tile, tile)
-        sheet.surface.blit(_fitted(image, area.width), area)
+        side = max(image.shape)
+        square = np.pad(image, [((side - length) // 2, (side - length + 1) // 2) for length in image.shape])
+        scaled = pygame.transform.smoothscale if side > area.width else pygame.transform.scale
+        sheet.surface.blit(scaled(picture(square, (side, side)).convert(24), area.size), area)
         pygame.draw.rect(sheet.surface, LINE, area, 1)
-
-
-def _fitted(image: Image, side: int) -> pygame.Surface:
-    """Return an image of any shape fitted into a square; small images keep sharp pixels."""
-    coarse = max(image.shape) // side
-    if coarse > 1:
-        rows, columns = (max(1, length // coarse) for length in image.shape)
-        part = np.pad(image, [(0, max(0, coarse - length)) for length in image.shape])
-        part = part[: rows * coarse, : columns * coarse].reshape(rows, coarse, -1).mean(axis=1)
-        image = part.reshape(rows, columns, coarse) @ np.full(coarse, 1 / coarse, np.float32)
-    height, width = image.shape
-    scale = side / max(height, width)
-    size = (max(1, round(width * scale)), max(1, round(height * scale)))
-    surface = pygame.Surface((side, side))
-    surface.fill(NIGHT0)
-    surface.blit(picture(image, size), ((side - size[0]) // 2, (side - size[1]) // 2))
-    return surface

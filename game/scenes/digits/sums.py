@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Final
 
 import numpy as np
@@ -13,9 +12,8 @@ from ai.explain.unit_sums import UnitSum
 from game.core import texts
 from game.digits.pictures import SIGNED, Numbers, picture
 from game.drawing.canvas import Canvas
-from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
 from game.scenes.digits.unit_walk import UnitWalk
 from game.ui.panel import Column
 
@@ -24,7 +22,6 @@ _LEAST: Final = 150.0
 _MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
 _FULL: Final = 0.84  # of a cell's width for its figure: any wider, two of them would read as one
 _DIM: Final = 0.45  # of a cell's colour behind its figure
-_ROW: Final = 28.0  # of a digit of the answer
 
 
 def figure(value: float, digits: int = 2) -> str:
@@ -37,15 +34,17 @@ def describe_sum(column: Column, walk: UnitWalk) -> None:
     """Add the sum of the unit looked at, which may be another one of the same stage later."""
     unit = walk.unit
     if walk.at_answer:
-        column.add(lambda cursor: _write_answer(cursor, walk))
+        column.caption(texts.PATCH_SCORES)
+        scores, answer = walk.stages[-1].outputs.reshape(-1).tolist(), int(walk.probabilities.argmax())
+        for digit, (score, probability) in enumerate(zip(scores, walk.probabilities.tolist(), strict=True)):
+            column.pair(f"{digit}:  {figure(score)}", f"{100 * probability:.1f}%", NET if digit == answer else None)
         column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
-        column.aside(texts.PATCH_AMBER)
     elif unit is None:
-        column.text(texts.PATCH_OTHER.format(layer=type(walk.stage.layer).__name__))
+        return
     elif unit.weights is None:
         pooling = walk.stage.kind == "pooling"
         first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
-        _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0], strongest=pooling)
+        _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0])
         second.gap(24)
         word = texts.PATCH_LARGEST.format(count=unit.patch[:, :, 0].size) if pooling else texts.PATCH_BENT
         second.pair(word, lambda: figure(_unit(walk).output, 3), NET)
@@ -89,19 +88,18 @@ def _describe_products(column: Column, walk: UnitWalk) -> None:
     second.pair(texts.PATCH_GAVE, lambda: figure(_unit(walk).output, 3))
 
 
-def _add_matrix(column: Column, words: str, values: Callable[[], Numbers], *, strongest: bool = False) -> None:
+def _add_matrix(column: Column, words: str, values: Callable[[], Numbers]) -> None:
     painted = PaintCache()
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:
         shown, room = values(), pygame.FRect((0, 0), box.size)
-        paint = partial(_paint_matrix, box=room, values=shown, strongest=strongest)
-        painted.draw(canvas, box, shown.tobytes(), paint)
+        painted.draw(canvas, box, shown.tobytes(), lambda sheet: _paint_matrix(sheet, room, shown))
 
     column.caption(words)
     column.picture(_HEIGHT, draw)
 
 
-def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers, *, strongest: bool) -> None:
+def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers) -> None:
     """Draw numbers in their cells, or as a picture alone where they would be too small to read."""
     rows, columns = values.shape
     written = max(rows, columns) <= _MOST_WRITTEN
@@ -117,27 +115,7 @@ def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers, *, stronges
         return
     across, down = width / columns, height / rows
     size = LABEL * min(1.0, _FULL * across / sheet.text_width(figure(-largest), size=LABEL, tabular=True))
-    best = np.unravel_index(int(values.argmax()), values.shape)
     for (row, column), value in np.ndenumerate(values):
-        lit = strongest and (row, column) == best
         at = box.left + (column + 0.5) * across, box.top + (row + 0.5) * down + 0.36 * size
-        colour = NET if lit else INK if value else MUTE
+        colour = INK if value else MUTE
         sheet.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)
-
-
-def _write_answer(cursor: Cursor, walk: UnitWalk) -> None:
-    """Write each digit's score and probability."""
-    outputs, answer = walk.stages[-1].outputs.reshape(-1), int(walk.probabilities.argmax())
-    box = cursor.take((len(outputs) + 1) * _ROW)
-    if (canvas := cursor.canvas) is None:
-        return
-    left, score, bar, right = box.left, box.left + 0.25 * box.width, box.left + 0.34 * box.width, box.right
-    canvas.text(texts.PATCH_SCORES, (score, box.top + 16), size=LABEL, colour=MUTE, weight="medium", align="right")
-    canvas.text(texts.PATCH_PROBABILITIES, (bar, box.top + 16), size=LABEL, colour=MUTE, weight="medium")
-    for digit, (value, probability) in enumerate(zip(outputs.tolist(), walk.probabilities.tolist(), strict=True)):
-        y, colour = box.top + 16 + _ROW * (digit + 1), INK if digit == answer else MUTE
-        canvas.text(str(digit), (left, y), colour=HUMAN if digit == walk.place[2] else colour, tabular=True)
-        canvas.text(figure(value), (score, y), size=SMALL, colour=colour, align="right", tabular=True)
-        canvas.bar((bar, y - 7, right - bar - 60, 4), probability, NET if digit == answer else MUTE)
-        share = f"{100 * probability:.1f}%"
-        canvas.text(share, (right, y), size=SMALL, colour=colour, align="right", tabular=True)

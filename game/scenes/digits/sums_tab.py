@@ -1,41 +1,31 @@
-"""The sums of a network for one digit: a patch, its sum and the answer, written out in numbers."""
+"""The sums of a network for one digit: what a unit of each layer reads, its sum, and what the layer gave."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.digits.mnist import MnistError, bright
-from ai.explain.excited import MostExciting
-from ai.explain.unit_sums import Place
-from ai.nn import ConvolutionLayer, FullyConnectedLayer
+from ai.explain.unit_sums import Box
 from game.core import texts
-from game.digits.cells import CellPicker
-from game.digits.kept import mnist_test
-from game.digits.pictures import GREY, Numbers, framed
+from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import HUMAN
-from game.input.controls import Command
-from game.scenes.digits.sums import describe_sum, figure
+from game.scenes.digits.cells import Cells
+from game.scenes.digits.sums import describe_sum
 from game.scenes.digits.unit_walk import UnitWalk, sentence_of
-from game.ui.actions import Action
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
     from ai.digits.preprocessing import Image
     from game.ui.actions import Table
-    from game.ui.context import Context
     from game.ui.panel import Column, Panel
 
 _LEAST: Final = 280.0
-_READ, _GIVEN, _TILES, _SEEN = 230.0, 170.0, 76.0, 100.0  # heights of pictures
-_SEARCHED: Final = 400  # digits of other people
-_MOST_WEIGHTS: Final = 400_000  # of a stage whose weights are shown as pictures
+_READ, _GIVEN, _SEEN = 230.0, 170.0, 100.0  # heights of pictures
 
 
 class SumsTab:
@@ -46,52 +36,21 @@ class SumsTab:
 
     """
 
-    def __init__(self, context: Context, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
-        self._network, self._image, self._build = classifier.network, image, build
+    def __init__(self, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
+        self._image, self._build = image, build
         self.walk = UnitWalk(classifier, image)
-        self._seen, self._exciting = PaintCache(), PaintCache()
-        self._digits = np.empty((0, 28, 28), np.float32)  # of other people, in which is searched what excites a filter
-        with suppress(MnistError):  # without them the picture is left out
-            self._digits = bright(mnist_test(context.assets_dir)[0][:_SEARCHED])
-        self._searches: dict[int, MostExciting] = {}
-        self._following: list[Callable[[], None]] = []  # shows the unit that is looked at in one picture
+        self._seen = PaintCache()
 
     def actions(self) -> Table:
-        return [
-            Action(Command.NEXT, lambda: self.choose(self.walk.number + 1), texts.PATCH_ON),
-            Action(Command.PREVIOUS, lambda: self.choose(self.walk.number - 1), texts.PATCH_BACK),
-        ]
+        return []
 
     def update(self) -> None:
-        """Search on for what excites the filters that are shown, a part per frame."""
-        walk = self.walk
-        if walk.stage.kind == "convolution" and not walk.at_answer and len(self._digits):
-            if walk.number not in self._searches:
-                before = walk.stages[: walk.number + 1]
-                self._searches[walk.number] = MostExciting(self._network, before, self._digits)
-            if not self._searches[walk.number].done:
-                self._searches[walk.number].go_on()
-
-    # What is looked at
+        """Nothing here goes on by itself."""
 
     def choose(self, number: int) -> None:
         """Look at another stage."""
-        if 0 <= number <= len(self.walk.stages) and number != self.walk.number:
-            self.walk.choose(number)
-            self._build()
-
-    def look_at(self, place: Place) -> None:
-        """Look at another unit of the stage; within one channel, the map that was looked into stays."""
-        channel, stage = self.walk.channel, self.walk.stage
-        same = place[2] == self.walk.place[2] and max(stage.inputs.shape[:2]) > 1
-        self.walk.look_at(place)
-        if same and stage.kind in ("convolution", "connected"):
-            self.walk.channel = channel
-        self._follow()
-
-    def _look_into(self, channel: int) -> None:
-        self.walk.look_into(channel)
-        self._follow()
+        self.walk.choose(number)
+        self._build()
 
     def _point_at_input(self, row: int, column: int) -> None:
         """Put the window's middle on a pixel, as nearly as it goes."""
@@ -99,148 +58,63 @@ class SumsTab:
         (height, width, _), step = stage.outputs.shape, stage.window[2]
         _, _, bottom, right = stage.read_by((0, 0, 1, 1))
         at = (row - bottom // 2) // step, (column - right // 2) // step
-        self.look_at((min(max(at[0], 0), height - 1), min(max(at[1], 0), width - 1), self.walk.place[2]))
-
-    def _follow(self) -> None:
-        self._stages.options = self._named_stages()
-        for follow in self._following:
-            follow()
+        self.walk.look_at((min(max(at[0], 0), height - 1), min(max(at[1], 0), width - 1), self.walk.place[2]))
 
     # Rows
 
     def describe(self, panel: Panel) -> None:
         walk = self.walk
-        self._following = []
-        self._stages = panel.choice("", self._named_stages(), walk.number, self.choose)
+        names = [*(texts.PATCH_STAGES[stage.kind] for stage in walk.stages), texts.PATCH_STAGES["answer"]]
+        panel.choice("", names, walk.number, self.choose)
         panel.aside(sentence_of(walk))
         panel.gap()
         left, middle, right = panel.beside((30, 40, 36), least=_LEAST)
-        if walk.at_answer:
-            left.caption(texts.PATCH_PICTURES["digit"].format(height=28, width=28))
-            left.picture(_READ, self._draw_digit)
-        else:
+        if not walk.at_answer:
             self._describe_read(left)
             self._describe_given(right)
+        if walk.number:
+            left.caption(texts.PATCH_PICTURES["digit"])
+            left.picture(_SEEN, self._draw_digit)
         describe_sum(middle, walk)
-        self._follow()
-
-    def _named_stages(self) -> list[str]:
-        """Return the name of each stage, with what the followed unit gave there."""
-        names = [*(texts.PATCH_STAGES[stage.kind] for stage in self.walk.stages), texts.PATCH_STAGES["answer"]]
-        values = [self.walk.value(number) for number in range(len(names))]
-        figures = ["" if value is None else figure(value) for value in values]
-        if values[-1] is not None:
-            figures[-1] = f"{100 * values[-1]:.1f}%"
-        return [f"{name} {value}".rstrip() for name, value in zip(names, figures, strict=True)]
 
     def _describe_read(self, column: Column) -> None:
-        walk, names = self.walk, texts.PATCH_PICTURES
-        stage, first = walk.stage, walk.number == 0
+        walk, stage, first = self.walk, self.walk.stage, self.walk.number == 0
         height, width, count = stage.inputs.shape
+        if max(height, width) == 1:
+            return
         maps: Numbers = np.moveaxis(stage.inputs if first else _signed(stage.inputs), 2, 0)
-        spatial = max(height, width) > 1
-        if spatial:
-            read = column.widget(CellPicker(self._point_at_input, _READ, *([GREY] if first else [])))
-            read.stride = stage.window[2]
-            label = names["digit" if first else "map"]
 
-            def follow() -> None:
-                row, across, _ = walk.place
-                window = stage.read_by((row, across, row + 1, across + 1))
-                words = label.format(number=walk.channel + 1, count=count, height=height, width=width)
-                read.show_map(maps[walk.channel], words, window)
-                read.cell = (window[0] + window[2]) // 2, (window[1] + window[3]) // 2
+        def window() -> Box:
+            row, across, _ = walk.place
+            return stage.read_by((row, across, row + 1, across + 1))
 
-            self._following.append(follow)
-            column.gap()
-        if count > 1:
-            words = names["maps" if spatial else "inputs"]
-            self._tiles(column, lambda _: maps, words, self._look_into, _TILES if spatial else _READ)
-        if not first:
-            column.caption(names["sees"])
-            column.picture(_SEEN, self._draw_digit)
-
-    def _describe_given(self, column: Column) -> None:
-        walk, stage, names = self.walk, self.walk.stage, texts.PATCH_PICTURES
-        height, width, count = stage.outputs.shape
-        maps: Numbers = np.moveaxis(_signed(stage.outputs), 2, 0)
-        if spatial := max(height, width) > 1:
-            given = column.widget(CellPicker(lambda row, at: self.look_at((row, at, walk.place[2])), _GIVEN))
-
-            def follow() -> None:
-                row, across, channel = walk.place
-                words = names["map"].format(number=channel + 1, count=count, height=height, width=width)
-                given.show_map(maps[channel], words, (row, across, row + 1, across + 1))
-                given.cell = (row, across)
-
-            self._following.append(follow)
-            column.gap()
-        filters = self._filters
-        if filters(walk.channel) is not None:
-            self._tiles(column, filters, names["filters"], self._turn_to)
-        else:
-            words = names["maps" if spatial else "scores" if walk.number == len(walk.stages) - 1 else "units"]
-            self._tiles(column, lambda _: maps, words, self._turn_to, _TILES if spatial else _GIVEN)
-        if stage.kind == "convolution" and len(self._digits):
-            column.caption(names["excites"])
-            column.picture(_SEEN, self._draw_exciting)
-
-    def _tiles(
-        self,
-        column: Column,
-        shown: Callable[[int], Numbers | None],
-        words: str,
-        choose: Callable[[int], None],
-        most: float = _TILES,
-    ) -> None:
-        """Add pictures to choose from: those of the map that is looked at, of which there are some for each map."""
-        walk = self.walk
-        picker = column.widget(CellPicker(lambda row, across: choose(row * picker.columns + across), most))
-        known: dict[int, Numbers | None] = {}
-
-        def follow() -> None:
-            if walk.channel not in known:
-                known.clear()
-                known[walk.channel] = shown(walk.channel)
-            if (tiles := known[walk.channel]) is not None:
-                chosen = walk.channel if choose == self._look_into else walk.place[2]
-                label = words.format(count=len(tiles), number=chosen + 1, digit=chosen)
-                picker.show_tiles(tiles, label, chosen)
-
-        self._following.append(follow)
+        label = texts.PATCH_PICTURES["digit" if first else "map"]
+        column.add(lambda cursor: cursor.caption(label.format(number=walk.channel + 1, count=count)))
+        shades = GREY if first else SIGNED
+        column.widget(Cells(lambda: maps[walk.channel, None], window, self._point_at_input, _READ, shades))
         column.gap()
 
-    def _turn_to(self, channel: int) -> None:
-        self.look_at((*self.walk.place[:2], channel))
+    def _describe_given(self, column: Column) -> None:
+        walk = self.walk
+        maps: Numbers = np.moveaxis(_signed(walk.stage.outputs), 2, 0)
+        label = texts.PATCH_PICTURES["map" if maps[0].size > 1 else "units"]
+        column.add(lambda cursor: cursor.caption(label.format(number=walk.place[2] + 1, count=len(maps))))
 
-    def _filters(self, channel: int) -> Numbers | None:
-        """Return each filter's weights for one map of the input, (filters, height, width); None for too many."""
-        match self.walk.stage.layer:
-            case ConvolutionLayer() as layer:
-                return _signed(layer.kernels[:, :, channel].transpose(2, 1, 0))
-            case FullyConnectedLayer() as layer:
-                order = self.walk.stage.order[:, :, channel]
-                if order.size * layer.weights.shape[1] <= _MOST_WEIGHTS:
-                    return _signed(layer.weights[order].transpose(2, 0, 1))
-        return None
+        def window() -> Box:
+            return 0, walk.place[2], 1, walk.place[2] + 1
 
-    # Pictures
+        def choose(_: int, number: int) -> None:
+            walk.look_at((*walk.place[:2], number))
+
+        column.widget(Cells(lambda: maps, window, choose, _GIVEN))
 
     def _draw_digit(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the digit, and which part of it the unit depends on."""
         side = min(box.size)
         self._seen.draw(canvas, (*box.topleft, side, side), side, framed(self._image))
-        if not self.walk.at_answer:
-            pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
-            corner = (box.left + beside * pixel, box.top + above * pixel)
-            canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
-
-    def _draw_exciting(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the ink that excites the filter most, of what was searched so far."""
-        search, channel, side = self._searches.get(self.walk.number), self.walk.place[2], min(box.size)
-        if search and channel in search.patches:
-            patch = search.patches[channel]
-            self._exciting.draw(canvas, (*box.topleft, side, side), patch.tobytes(), framed(patch))
+        pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
+        corner = (box.left + beside * pixel, box.top + above * pixel)
+        canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -9,9 +9,9 @@ import numpy as np
 import pygame
 
 from ai.digits.classifier import DIGITS, DigitClassifier
-from ai.digits.mnist import Labels, MnistError, Pixels, bright
+from ai.digits.mnist import Labels, Pixels, bright
 from ai.explain.inspection import traces
-from ai.nn import SGD, Array, FullyConnectedLayer, ModelFormatError, NeuralNetwork
+from ai.nn import SGD, Array, FullyConnectedLayer
 from game.core import texts
 from game.core.scene import Route
 from game.digits.kept import classifier_in, mnist_test
@@ -40,7 +40,8 @@ class Blame:
     """The shipped network of fully connected layers, a copy of it that learns, and one digit that it misreads.
 
     Attributes:
-        chosen: number of the test image.
+        digit: number of the misread digit; `chosen` is that of its test image.
+        network: the copy.
         label: the digit that it is.
         reached: how many layers the error has reached: 0 none, 1 the answers, 4 the image.
         steps: learning steps taken on this digit.
@@ -58,24 +59,16 @@ class Blame:
 
     def begin(self, digit: int) -> None:
         """Begin with one of the digits that the shipped network misreads."""
-        self._digit = digit
+        self.digit = digit
         self.chosen = self.misread[digit % len(self.misread)]
         self.classifier = DigitClassifier(self._shipped.network.copy())
+        self.network = self.classifier.network
         self.label = int(self._labels[self.chosen])
         self.image = bright(self._pixels[self.chosen : self.chosen + 1])
         self._target = np.eye(DIGITS, dtype=np.float32)[[self.label]]
         self.reached = self.steps = self.moved = 0
         self._look()
         self.before, self.read_as, self.right_before = self.odds[self.label], int(self.odds.argmax()), self.right()
-
-    def another(self) -> None:
-        """Go on to the next digit."""
-        self.begin(self._digit + 1)
-
-    @property
-    def network(self) -> NeuralNetwork:
-        """The network that learns."""
-        return self.classifier.network
 
     def step(self) -> bool:
         """Send the error back one layer, or learn once it has reached the image; return whether it has learned."""
@@ -126,15 +119,7 @@ class BackwardsChapter(Chapter):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._cache = PaintCache(most=6)
-        try:
-            shipped = classifier_in(context.models_dir / "digits" / _MODEL)
-            self.model = Blame(shipped, *mnist_test(context.assets_dir))
-        except (ModelFormatError, MnistError) as error:
-            self.problem = str(error)
-
-    def restart(self) -> None:
-        self.model.begin(0)
-        self.tried = False
+        self.model = Blame(classifier_in(context.models_dir / "digits" / _MODEL), *mnist_test(context.assets_dir))
 
     def controls(self, column: Column) -> None:
         back = self.model.reached < 4
@@ -149,11 +134,11 @@ class BackwardsChapter(Chapter):
 
     def another(self) -> None:
         """Show the next digit that the shipped network misreads."""
-        self.model.another()
+        self.model.begin(self.model.digit + 1)
         self.changed, self.tried = True, False
 
-    def verdict(self) -> int | None:
-        return self.model.verdict()
+    def update(self) -> None:
+        """Stand still: each step is a press."""
 
     def unit(self, stage: int, unit: int) -> str:
         """Return what a unit answered, and its share of the blame once that has come so far."""
@@ -176,7 +161,7 @@ class BackwardsChapter(Chapter):
     def below(self, column: Column) -> None:
         column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.model.reached > 0], size=SMALL, colour=MUTE)
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         for stage, links in enumerate(self.model.links):
             for start, end, slope in links if self.model.reached >= 4 - stage else ():
                 line = _spot(box, stage, start).center, _spot(box, stage + 1, end).midleft
@@ -196,14 +181,11 @@ class BackwardsChapter(Chapter):
             self._draw_answer(canvas, _spot(box, len(_BOXES), digit), digit)
 
     def _paint(self, stage: int, blamed: bool, columns: int, sheet: Canvas) -> None:
-        values = (
-            self.model.blames[stage]
-            if blamed
-            else self.model.image[0]
-            if stage == 0
-            else np.abs(self.model.units[stage - 1])
-        )
-        shown = -values / max(float(np.abs(values).max()), 1e-9) if blamed else values
+        model = self.model
+        if blamed:
+            shown = -model.blames[stage] / max(float(np.abs(model.blames[stage]).max()), 1e-9)
+        else:
+            shown = np.abs(model.units[stage - 1]) if stage else model.image[0]
         shades = SIGNED if blamed else GREY
         sheet.surface.blit(picture(shown.reshape(-1, columns), sheet.size, shades), (0, 0))
 

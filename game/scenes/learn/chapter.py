@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import pygame
 
@@ -33,6 +33,16 @@ class Code:
     note: str
 
 
+class Model(Protocol):
+    """What is touched in a chapter, without a window."""
+
+    def step(self) -> bool:
+        """Advance by 1/60 s; return whether this has shown something."""
+
+    def verdict(self) -> int | None:
+        """Return the number of the answer that the player's own tries have shown; None while they decide nothing."""
+
+
 class Chapter(ABC):
     """One chapter: a model to touch, its picture, and what a try has shown.
 
@@ -41,10 +51,9 @@ class Chapter(ABC):
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
         explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
+        model: what is touched.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
-        news: set when that has changed; the scene takes it.
-        problem: why there is nothing to show or to try; empty if there is.
-        changed: set when there are other controls than before; the scene describes them anew.
+        changed: set when it shows something else than before, or has other controls; the scene describes them anew.
 
     """
 
@@ -52,11 +61,11 @@ class Chapter(ABC):
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
     explains: ClassVar[bool] = False
-    problem = ""
+    model: Model
 
     def __init__(self, context: Context) -> None:
         self.context = context
-        self.tried = self.news = self.changed = False
+        self.tried = self.changed = False
 
     @property
     def words(self) -> dict[str, str]:
@@ -72,15 +81,7 @@ class Chapter(ABC):
 
     def found(self) -> None:
         """Take note that a try has shown something."""
-        self.tried = self.news = True
-
-    @abstractmethod
-    def restart(self) -> None:
-        """Begin anew, as when the chapter was opened."""
-
-    @abstractmethod
-    def verdict(self) -> int | None:
-        """Return the number of the answer that the player's own tries have shown; None while they decide nothing."""
+        self.tried = self.changed = True
 
     @abstractmethod
     def why(self) -> str:
@@ -91,11 +92,17 @@ class Chapter(ABC):
         return None
 
     @abstractmethod
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the picture in a box, in points, `alpha` of the way from the step before to this one."""
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the picture in a box, in points."""
 
-    def update(self) -> None:  # noqa: B027 - nothing moves in some chapters
+    def update(self) -> None:
         """Advance by 1/60 s; called once the question was answered, until when the picture stands still."""
+        if self.model.step():
+            self.found()
+
+    def verdict(self) -> int | None:
+        """Return what the model's `verdict` says."""
+        return self.model.verdict()
 
     def close(self) -> None:  # noqa: B027 - most hold nothing
         """Release resources such as a process."""

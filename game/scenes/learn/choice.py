@@ -28,9 +28,10 @@ from game.explain.tables import Line, from_zero, table
 from game.flight import networks
 from game.flight.networks import DECISION_STEPS
 from game.scenes.learn.chapter import Chapter
-from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
+from game.scenes.learn.pictures import DrawnLander, draw_ground
 from game.ui.context import Context
 from game.ui.panel import Column
+from game.world.camera import View
 
 # Moments of flights of the shipped network: seed, kind of start, and decisions flown before.
 MOMENTS: Final = (
@@ -115,9 +116,8 @@ class Moment:
         self.first, self.decision = action, replace(self.decision, action=np.array([action]))
 
     def step(self) -> bool:
-        """Advance by 1/60 s, if a flight goes on; return whether it has come to its end."""
-        if (first := self.first) is None or self.over:
-            return False
+        """Advance a flight that goes on by 1/60 s; return whether it has come to its end."""
+        assert self.first is not None
         if self._steps % DECISION_STEPS == 0 and self._steps:
             self._decide()
         pay = float(self.env.step(self.decision.action).reward[0])
@@ -127,7 +127,7 @@ class Moment:
             self.path.append(self.env.position[0].copy())
         ended = bool(self.env.outcome[0] != Outcome.FLYING)
         if ended:
-            self.results[first] = Came(self.came, self.landed)
+            self.results[self.first] = Came(self.came, self.landed)
         return ended
 
     def verdict(self) -> int | None:
@@ -146,23 +146,12 @@ class ChoiceChapter(Chapter):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        network = networks.load(networks.DEFAULT, context.models_dir / networks.LANDER / networks.DEFAULT)
-        if isinstance(network.policy, DeepQAgent):
-            self.model = Moment(network.policy)
-            self._lander = DrawnLander(self.model.env)
-        else:
-            self.problem = network.problem
-
-    def restart(self) -> None:
-        self.model.results.clear()
-        self._show(0)
+        self.model = Moment(DeepQAgent.load(context.models_dir / networks.LANDER / networks.DEFAULT))
+        self._lander = DrawnLander(self.model.env)
 
     def turn(self) -> None:
         """Go to the next moment."""
-        self._show((self.model.number + 1) % len(MOMENTS))
-
-    def _show(self, number: int) -> None:
-        self.model.freeze(number)
+        self.model.freeze((self.model.number + 1) % len(MOMENTS))
         self._lander = DrawnLander(self.model.env)
         self.tried, self.changed = False, True
 
@@ -178,15 +167,9 @@ class ChoiceChapter(Chapter):
         self._lander, self.changed = DrawnLander(self.model.env), True
 
     def update(self) -> None:
-        flies = self.model.running
-        if self.model.step():
-            self.changed = True
-            self.found()
-        if flies:
+        if self.model.running:
+            super().update()
             self._lander.follow()
-
-    def verdict(self) -> int | None:
-        return self.model.verdict()
 
     def why(self) -> str:
         sentences = " ".join(
@@ -217,15 +200,15 @@ class ChoiceChapter(Chapter):
             lines.append(Line(cells, lit=action == self.model.best, bars=bars))
         return lines
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         foot = PARAMS.ground - _BELOW
         high = max(_METRES * box.height / box.width, max(y for _, y in self.model.path) + _ABOVE - foot)
-        view = view_in(box, (0.0, foot + high / 2), high * box.width / box.height, canvas.scale)
-        with inside(canvas, box):
+        view = View.within(box, canvas.scale, (0.0, foot + high / 2), box.height / high)
+        with canvas.clipped(box):
             draw_ground(canvas, box, view)
             for a, b in pairwise(view.points(self.model.path).tolist()):
                 canvas.line(a, b, mix(NIGHT1, NET, 0.6), 1.5)
-            self._lander.draw(canvas, view, alpha if self.model.running else 1.0)
+            self._lander.draw(canvas, view)
             if self.model.first is None:
                 start = self.model.env.position[0]
                 a, b = view.points([start, start + self.model.env.velocity[0]]).tolist()

@@ -58,30 +58,28 @@ class Descent:
         trail: the weight after each step, the first one included.
         costs: the cost at each of them.
         lost: whether its numbers have grown beyond all bounds.
+        results: what has been seen, by its kind: the figures of `LEARN_DOWNHILL_WHY`.
 
     """
 
     def __init__(self, inputs: Array, targets: Array) -> None:
         self._inputs, self._targets = inputs, targets
         self.network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(1, 1))
+        self.results: dict[str, dict[str, float]] = {}
         self.begin(_FIRST_RATE)
 
     def begin(self, rate: float) -> None:
         """Go back to the first weight, with a step length."""
         self.rate, self.optimizer, self.network.values[:] = rate, SGD(rate), (START, 0.0)
-        self.lost = False
+        self.lost, self._wait = False, 0
         self.trail: list[float] = []
         self.costs: list[float] = []
         self._look()
 
-    @property
-    def over(self) -> bool:
-        """Whether it has taken enough steps, or left for good."""
-        return self.lost or len(self.costs) > ENOUGH
-
     def step(self) -> bool:
-        """Take one step on all examples, unless it is over; return whether that was the last one."""
-        if self.over:
+        """Take a step on all examples now and then, until it is over; return whether that was the last one."""
+        self._wait += 1
+        if self._wait % _PAUSE or self.lost or len(self.costs) > ENOUGH:
             return False
         try:
             self.network.train_batch(self._inputs, self._targets, self.optimizer)
@@ -89,7 +87,16 @@ class Descent:
         except DivergenceError:
             self.lost = True
         self.lost |= abs(self.trail[-1]) > _LOST
-        return self.over
+        if not self.lost and len(self.costs) <= ENOUGH:
+            return False
+        first, last = self.costs[0], self.costs[-1]
+        kind = "long" if last >= first else "right" if last < 0.01 * first else "short"
+        self.results[kind] = {"rate": self.rate, "first": first, "last": last, "steps": len(self.costs) - 1}
+        return True
+
+    def verdict(self) -> int | None:
+        """Return that longer steps help up to a point, once some were too short, some right and some too long."""
+        return 1 if set(KINDS) <= self.results.keys() else None
 
     def cost(self, weights: Doubles) -> Doubles:
         """Return what the network would cost with other weights (n,): its mean squared error."""
@@ -101,17 +108,6 @@ class Descent:
         """The gradient at the present weight."""
         return float(self.network.gradients[0])
 
-    @property
-    def kind(self) -> str:
-        """What its steps were: too "short", "right" or too "long"."""
-        first, last = self.costs[0], self.costs[-1]
-        return "long" if last >= first else "right" if last < 0.01 * first else "short"
-
-    @property
-    def figures(self) -> dict[str, float]:
-        """Figures of `LEARN_DOWNHILL_WHY`."""
-        return {"rate": self.rate, "first": self.costs[0], "last": self.costs[-1], "steps": len(self.costs) - 1}
-
     def _look(self) -> None:
         """Note weight and cost, and fill the gradient of this place, from which the next step is taken."""
         network = self.network
@@ -122,75 +118,49 @@ class Descent:
 
 
 class DownhillChapter(Chapter):
-    """Steps of a length that is chosen, down the cost of one weight.
-
-    Attributes:
-        descent: the neuron and its way.
-        results: what has been seen, by its kind: the figures of `LEARN_DOWNHILL_WHY`.
-
-    """
+    """Steps of a length that is chosen, down the cost of one weight."""
 
     key, door = "downhill", Route("train")
+    model: Descent
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self.descent = Descent(*flights())
+        self.model = Descent(*flights())
         weights = np.linspace(*_SEEN[0], 121)
-        self._curve = list(zip(weights.tolist(), self.descent.cost(weights).tolist(), strict=True))
-        self.restart()
-
-    def restart(self) -> None:
-        self.results: dict[str, dict[str, float]] = {}
-        self.tried = False
-        self.set_rate(_FIRST_RATE)
+        self._curve = list(zip(weights.tolist(), self.model.cost(weights).tolist(), strict=True))
 
     def controls(self, column: Column) -> None:
         low, high = map(math.log10, RATES)
-        column.slider(texts.LEARN_DOWNHILL_RATE, math.log10(self.descent.rate), (low, high),
-                      lambda power: self.set_rate(round(10**power, 3)), step=0.1,
+        column.slider(texts.LEARN_DOWNHILL_RATE, math.log10(self.model.rate), (low, high),
+                      lambda power: self.model.begin(round(10**power, 3)), step=0.1,
                       figure=lambda power: f"{10**power:.3f}")  # fmt: skip
-        column.button(texts.LEARN_DOWNHILL_BEGIN, lambda: self.set_rate(self.descent.rate))
-
-    def set_rate(self, rate: float) -> None:
-        """Begin with a step length."""
-        self.descent.begin(rate)
-        self._wait = 0
-
-    def update(self) -> None:
-        self._wait += 1
-        if self._wait % _PAUSE == 0 and self.descent.step():
-            self.results[self.descent.kind] = self.descent.figures
-            self.found()
+        column.button(texts.LEARN_DOWNHILL_BEGIN, lambda: self.model.begin(self.model.rate))
 
     def why(self) -> str:
-        templates = texts.LEARN_DOWNHILL_WHY
-        return " ".join(templates[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
-
-    def verdict(self) -> int | None:
-        """Return that longer steps help up to a point, once some were too short, some right and some too long."""
-        return 1 if set(KINDS) <= self.results.keys() else None
+        results = self.model.results
+        return " ".join(texts.LEARN_DOWNHILL_WHY[kind].format(**results[kind]) for kind in KINDS if kind in results)
 
     def code(self) -> Code:
-        return Code(SGD._fill_step, np.multiply, f"{decimal(self.descent.slope, 3, '+')} · {self.descent.rate:.3f}")
+        return Code(SGD._fill_step, np.multiply, f"{decimal(self.model.slope, 3, '+')} · {self.model.rate:.3f}")
 
     def below(self, column: Column) -> None:
         column.text(self._step, size=SMALL, colour=HUMAN)
 
     def _step(self) -> str:
         """Return the cost of the ball's weight, the slope there, and the step."""
-        descent = self.descent
+        descent = self.model
         cost, slope, rate = descent.costs[-1], descent.slope, descent.rate
         if descent.lost or not _seen((descent.trail[-1], cost)):
             return texts.LEARN_DOWNHILL_GONE.format(steps=len(descent.costs) - 1)
         step = decimal(-slope * rate, 3, "+")
         return texts.LEARN_DOWNHILL_STEP.format(cost=cost, slope=decimal(slope, 3, "+"), rate=rate, step=step)
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         _draw_way(canvas, box, self._curve, NET)
-        trail = list(zip(self.descent.trail, self.descent.costs, strict=True))
+        trail = list(zip(self.model.trail, self.model.costs, strict=True))
         for point in filter(_seen, trail):
             canvas.dot(_on(box, point), 2.5, HUMAN, 0.7)
-        (weight, cost), slope = trail[-1], self.descent.slope
+        (weight, cost), slope = trail[-1], self.model.slope
         if _seen(trail[-1]):
             canvas.dot(_on(box, trail[-1]), 7, HUMAN)
             span = 0.5 / math.hypot(1.0, 0.1 * slope)  # of the slope under the ball

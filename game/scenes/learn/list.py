@@ -9,7 +9,7 @@ from typing import Final
 from ai.pilots.folder import PilotFolder
 from game.core import texts
 from game.core.scene import Transition, push
-from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
+from game.drawing.tokens import INK, MUTE, SMALL, TITLE
 from game.flight import networks
 from game.flight import own as own_pilots
 from game.flight.logbook import Records
@@ -25,7 +25,6 @@ from game.ui.widget import OnPress
 _KEYS: Final = tuple(PATH)
 _LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
 _PITCH: Final = 34.0  # of a row of the list
-_COLUMNS: Final = (72.0, 0.0)  # from the right end of the list: where minutes and progress end
 
 
 class LearnScene(PanelScene):
@@ -65,17 +64,11 @@ class LearnScene(PanelScene):
         left, right = panel.beside((5, 4), _LEAST)
         self._list = left.listing(
             [self._row(key) for key in PATH], lambda _: self._open(), around=_AROUND, index=_KEYS.index(self.chosen),
-            first=self._list.first if self._list else 0, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
+            first=self._list.first if self._list else 0, on_choose=self._choose, pitch=_PITCH,
         )  # fmt: skip
-        right.title(lambda: texts.LEARN[self.chosen]["title"], TITLE + 4)
         right.text(lambda: texts.LEARN[self.chosen]["question"])
         right.gap(6)
-        right.text(lambda: texts.LEARN[self.chosen]["lead"], size=SMALL + 1, colour=MUTE)
-        right.text(self._guessed, size=SMALL + 1, colour=HUMAN)
-        right.gap(6)
-        self._verb = right.button(
-            texts.LEARN_VERBS[self._progress.state(self.chosen)], self._open, size=TITLE, colour=INK
-        )
+        right.button(texts.LEARN_OPEN, self._open, size=TITLE, colour=INK)
         right.gap()
         self._describe_own(right)
         left.gap()
@@ -95,16 +88,10 @@ class LearnScene(PanelScene):
                           colour=MUTE if done else INK)  # fmt: skip
 
     def _row(self, key: str) -> Row:
-        minutes = texts.LEARN_MINUTES.format(count=PATH[key].minutes)
-        return texts.LEARN[key]["title"], minutes, texts.LEARN_STATES[self._progress.state(key)]
-
-    def _guessed(self) -> str:
-        guess = self._progress.answer(self.chosen)
-        return f"{texts.LEARN_YOU_SAID}: {guess}" if guess else ""
+        return texts.LEARN[key]["title"], texts.LEARN_STATES[self._progress.state(key)]
 
     def _choose(self, index: int) -> None:
         self.chosen = _KEYS[index]
-        self._verb.label = texts.LEARN_VERBS[self._progress.state(self.chosen)]
 
     def _open(self) -> Transition:
         return push("chapter", self.chosen)

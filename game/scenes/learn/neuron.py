@@ -19,9 +19,10 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NET, SMALL
 from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
-from game.scenes.learn.pictures import DrawnLander, inside, view_in
+from game.scenes.learn.pictures import DrawnLander
 from game.ui.context import Context
 from game.ui.panel import Column
+from game.world.camera import View
 
 # What the neuron senses: indices of sin of the tilt, spin and sideways speed in an observation.
 SENSES: Final = (4, 6, 2)
@@ -60,10 +61,6 @@ class Steering:
         self.network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
         self.env = LanderEnv(1, seed=0, spawn="fixed", frame_skip=1, limits=replace(LIMITS, time=1e9))
         self.env.reset()
-        self.restart()
-
-    def restart(self) -> None:
-        """Begin anew, without weights."""
         self.network.values[:] = 0.0
         self.best: tuple[float, tuple[float, ...]] = (0.0, (0.0, 0.0, 0.0))
         self._flights = 0
@@ -142,16 +139,12 @@ class NeuronChapter(Chapter):
     """The neuron's three weights, its lander, and what it adds up."""
 
     key, door = "neuron", Route("watch")
+    model: Steering
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self.model = Steering()
         self._lander = DrawnLander(self.model.env)
-
-    def restart(self) -> None:
-        self.model.restart()
-        self._lander.begin()
-        self.tried = False
 
     def controls(self, column: Column) -> None:
         for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
@@ -167,15 +160,8 @@ class NeuronChapter(Chapter):
         self.changed = True
 
     def update(self) -> None:
-        if self.model.step():
-            self.found()
-        if self.model.age:
-            self._lander.follow()
-        else:
-            self._lander.begin()
-
-    def verdict(self) -> int | None:
-        return self.model.verdict()
+        super().update()
+        self._lander.follow()
 
     def why(self) -> str:
         seconds, weights = self.model.best
@@ -200,14 +186,14 @@ class NeuronChapter(Chapter):
         total, output = decimal(float(model.products.sum()), 2, "+"), decimal(model.output, 2, "+")
         return texts.LEARN_NEURON_SUM.format(total=total, output=output, action=texts.LEARN_NEURON_ACTIONS[model.steer])
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         world = pygame.FRect(box.left, box.top, box.width, (1 - _NEURON) * box.height)
-        view = view_in(world, (0.0, _HEIGHT - 0.5), 2 * _SIGHT + 2, canvas.scale)
-        with inside(canvas, world):
+        view = View.within(world, canvas.scale, (0.0, _HEIGHT - 0.5), world.width / (2 * _SIGHT + 2))
+        with canvas.clipped(world):
             ((x, y),) = view.points([(0.0, _HEIGHT)]).tolist()
             canvas.line((world.left, y), (world.right, y), LINE)
             canvas.line((x, world.top), (x, world.bottom), LINE)
-            self._lander.draw(canvas, view, alpha)
+            self._lander.draw(canvas, view)
         there = self.model.seconds >= GOAL
         words = texts.LEARN_NEURON_FLIGHT[self.model.end or ("there" if there else "flies")].format(
             seconds=self.model.seconds

@@ -1,4 +1,4 @@
-"""The whole thing in one file: `examples/microlander.py`, part by part, each with a door to what it grew up to be."""
+"""The whole thing in one file: `examples/microlander.py`, part by part, each with the module that it grew up to be."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Final, NamedTuple
 
 from game.core import texts
 from game.core.assets import MICROLANDER
-from game.core.scene import Transition, push
 from game.core.source import Source
 from game.drawing.tokens import TITLE
 from game.explain.code_listing import add_listing, listing_height
@@ -21,10 +20,6 @@ from game.ui.panel_scene import PanelScene
 _PART: Final = re.compile(r" *# (\d+)\. .+: (\S+)$")  # its number, and its module
 _SHARES, _LEAST, _APART = (1.0, 3.2), 200.0, 36.0  # of the columns of parts and of code
 _AROUND, _PITCH = 180.0, 28.0  # points above and below the list, and of a row of it
-# Where each part can be seen grown up, in their order: a chapter, or a screen.
-DOORS: Final = ("flights", "train", "physics", "physics", "pay", "watch", "plane", "backwards", "downhill", "memory",
-                "target", "train", "runs", "watch")  # fmt: skip
-_SCREENS: Final = ("flights", "train", "physics", "watch", "runs")
 
 
 class Part(NamedTuple):
@@ -41,16 +36,9 @@ def parts() -> list[Part]:
     ends = [number for number, _ in begins[1:]] + [len(lines) + 1]
     path = f"examples/{MICROLANDER.name}"
     return [
-        Part(Source(path, found[1], _trimmed(lines[number - 1 : end - 1]), ast.Module([], [])), found[2])
+        Part(Source(path, found[1], tuple(lines[number - 1 : end - 1]), ast.Module([], [])), found[2])
         for (number, found), end in zip(begins, ends, strict=True)
     ]
-
-
-def _trimmed(lines: list[tuple[int, str]]) -> tuple[tuple[int, str], ...]:
-    """Return numbered lines without empty ones at their end."""
-    while lines and not lines[-1][1]:
-        lines.pop()
-    return tuple(lines)
 
 
 class OneFileScene(PanelScene):
@@ -74,39 +62,19 @@ class OneFileScene(PanelScene):
         panel.gap(8)
         left, right = panel.beside(_SHARES, _LEAST, _APART)
         self._list = left.listing(
-            [(title,) for title in texts.ONE_FILE_PARTS], lambda _: self._open(), around=_AROUND, index=self.chosen,
+            [(title,) for title in texts.ONE_FILE_PARTS], lambda _: None, around=_AROUND, index=self.chosen,
             first=self._list.first if self._list else 0, on_choose=self._choose, pitch=_PITCH,
         )  # fmt: skip
         right.title(lambda: texts.ONE_FILE_PARTS[self.chosen], TITLE + 4)
-        self._door = right.button(self._grown_up, self._open, lambda: self._parts[self.chosen].grown_up)
+        right.aside(lambda: texts.ONE_FILE_GROWN.format(place=self._parts[self.chosen].grown_up))
         right.gap(8)
         add_listing(right, self._height, self._shown)
 
-    @property
-    def _grown_up(self) -> str:
-        return texts.ONE_FILE_DOOR.format(place=_name(DOORS[self.chosen]))
-
     def _choose(self, index: int) -> None:
         self.chosen = index
-        self._door.label = self._grown_up
 
     def _shown(self) -> tuple[Source, int | None, Mapping[int, str]]:
         return self._parts[self.chosen].source, None, {}
 
     def _height(self, width: float) -> float:
         return listing_height(self._parts[self.chosen].source, width)
-
-    def _open(self) -> Transition:
-        door = DOORS[self.chosen]
-        return push(door) if door in _SCREENS else push("chapter", door)
-
-
-def _name(door: str) -> str:
-    """Return what a chapter or a screen is called."""
-    if door == "flights":
-        return texts.FLIGHTS_TITLE
-    if door == "physics":
-        return texts.LEARN_PHYSICS
-    if door == "runs":
-        return texts.RUNS_TITLE
-    return texts.MENU[door][0] if door in _SCREENS else texts.LEARN[door]["title"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from game.core import texts
 
@@ -11,32 +11,24 @@ if TYPE_CHECKING:
     from game.core.settings import Settings
     from game.scenes.learn.chapter import Chapter
 
-
-class Entry(NamedTuple):
-    """Where a chapter is, "module.Class" in this package, and the minutes that it takes."""
-
-    place: str
-    minutes: int
-
-
-# By the key of each chapter's texts in `texts.LEARN`.
-PATH: Final[dict[str, Entry]] = {
-    "neuron": Entry("neuron.NeuronChapter", 3),
-    "plane": Entry("plane.PlaneChapter", 3),
-    "downhill": Entry("downhill.DownhillChapter", 4),
-    "backwards": Entry("backwards.BackwardsChapter", 3),
-    "pay": Entry("pay.PayChapter", 5),
-    "choice": Entry("choice.ChoiceChapter", 4),
-    "target": Entry("runs.TargetChapter", 3),
-    "memory": Entry("memory.MemoryChapter", 4),
-    "daring": Entry("runs.DaringChapter", 3),
+# Where each chapter is, "module.Class" in this package, by the key of its texts in `texts.LEARN`.
+PATH: Final = {
+    "neuron": "neuron.NeuronChapter",
+    "plane": "plane.PlaneChapter",
+    "downhill": "downhill.DownhillChapter",
+    "backwards": "backwards.BackwardsChapter",
+    "pay": "pay.PayChapter",
+    "choice": "choice.ChoiceChapter",
+    "target": "runs.TargetChapter",
+    "memory": "memory.MemoryChapter",
+    "daring": "runs.DaringChapter",
 }
 FIRST: Final = next(iter(PATH))
 
 
 def chapter_type(key: str) -> type[Chapter]:
     """Return the class of a chapter."""
-    module, _, name = PATH[key].place.partition(".")
+    module, _, name = PATH[key].partition(".")
     chapter: type[Chapter] = getattr(import_module(f"game.scenes.learn.{module}"), name)
     return chapter
 

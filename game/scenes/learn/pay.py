@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.environment import Bools, Doubles, Ints
+from ai.environment import Ints
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
@@ -21,11 +21,11 @@ from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
 from game.explain.figures import points
-from game.flight.poses import Poses
-from game.scenes.learn.chapter import Chapter, Code
-from game.scenes.learn.pictures import draw_ground, draw_landers, view_in
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.pictures import draw_ground, draw_landers
 from game.ui.context import Context
 from game.ui.panel import Column
+from game.world.camera import View
 
 Flown = dict[str, float]
 ENDS: Final = dict(zip(("landed", "crashed", "gone", "late"), list(Outcome)[1:], strict=True))
@@ -62,7 +62,6 @@ class Trial:
         self.agent = checkpoint.agent(config)
         self.env = LanderEnv(flights, _SEED, SPAWN, frame_skip=1)
         self.env.reset()
-        self.poses = Poses(self.env)
         self._steps = 0
         self._actions: Ints = np.zeros(flights, np.intp)
 
@@ -77,7 +76,6 @@ class Trial:
             self._actions = self.agent.act(self.env.observe(), held=self._actions)
         self._steps += 1
         self.env.fly(self._actions)
-        self.poses.take()
 
     def flown(self) -> Flown:
         """Return how the flights have ended so far: how many of each kind, and their mean time and fuel in seconds."""
@@ -102,11 +100,7 @@ class PayChapter(Chapter):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._worker: Worker | None = None
-        self._runs = 0
-        self.restart()
-
-    def restart(self) -> None:
-        self.pay, self.tried = ASKED, False
+        self._runs, self.pay = 0, ASKED
         self.results: dict[str, Flown] = {}
         self._clear()
 
@@ -126,10 +120,6 @@ class PayChapter(Chapter):
     def learning(self) -> bool:
         """Whether a run goes on."""
         return self._worker is not None
-
-    @property
-    def running(self) -> bool:
-        return self.learning or (self.trial is not None and not self.trial.over)
 
     def controls(self, column: Column) -> None:
         keys = list(PAYS)
@@ -202,11 +192,6 @@ class PayChapter(Chapter):
             for key, flown in self.results.items()
         )
 
-    def code(self) -> Code:
-        pay = PAYS[self.pay]
-        note = texts.LEARN_PAY_NOTE.format(time=points(pay.time / DT, 0), terminal=points(pay.terminal, 0))
-        return Code(LanderEnv.step, "parts", note)
-
     def below(self, column: Column) -> None:
         column.bar(lambda: self.decisions / DECISIONS)
         column.text(self._state, size=SMALL)
@@ -219,24 +204,16 @@ class PayChapter(Chapter):
             return texts.LEARN_PAY_TRAINING.format(decisions=self.decisions, most=DECISIONS)
         return self.note or texts.LEARN_PAY_WAITING
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         metres = max(_METRES, _HEIGHT * box.width / box.height)
         middle = PARAMS.ground - _BELOW + 0.5 * metres * box.height / box.width
-        view = view_in(box, (0.0, middle), metres, canvas.scale)
+        view = View.within(box, canvas.scale, (0.0, middle), box.width / metres)
         draw_ground(canvas, box, view)
-        poses, burning = self._shown(alpha)
-        if len(poses):
-            draw_landers(canvas, box, view, poses, burning, self.decisions, _SIZE)
-
-    def _shown(self, alpha: float) -> tuple[Doubles, Bools]:
-        """Return the poses (n, 3) to draw, and which of them fire their main engines (n,)."""
-        if self.trial:
-            poses, outcome = self.trial.poses.at(alpha), self.trial.env.outcome.astype(np.intp)
-            fired = self.trial.env.fired
-        elif self._swarm is not None:
-            outcome, fired = self._swarm.outcome.astype(np.intp), self._swarm.action.astype(np.intp)
-            poses = np.column_stack([self._swarm.position, self._swarm.angle]).astype(float)
-        else:
-            return np.empty((0, 3)), np.empty(0, bool)
-        seen = outcome != Outcome.CRASHED
-        return poses[seen], ((fired >= 3) & (outcome == Outcome.FLYING))[seen]
+        shown = self.trial.env if self.trial else self._swarm
+        if shown is None:
+            return
+        poses = np.column_stack([shown.position, shown.angle]).astype(float)
+        fired = shown.action if isinstance(shown, SwarmState) else shown.fired
+        seen, burning = shown.outcome != Outcome.CRASHED, (fired >= 3) & (shown.outcome == Outcome.FLYING)
+        with canvas.clipped(box):
+            draw_landers(canvas, box, view, poses[seen], burning[seen], self.decisions, _SIZE)

@@ -1,9 +1,8 @@
-"""What the chapters' pictures have in common: flights in a box, lines of figures, heat maps, curves."""
+"""What the chapters' pictures have in common: flights in a box, curves."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
@@ -12,38 +11,16 @@ import pygame
 
 from ai.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, LanderEnv
-from ai.nn import Array
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import CAPTION, FAINT, LINE, MUTE, NIGHT0, VIEW_SIZE, Colour
-from game.flight.poses import Poses
+from game.drawing.tokens import CAPTION, FAINT, LINE, MUTE, Colour
 from game.world import lander as art
-from game.world.camera import POINTS_PER_METRE, View
+from game.world.camera import View
 from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.landscape.pad import draw_pad
 
 HEAD: Final = 1.3  # metres from a lander's middle to above its antenna
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
-_DEPTH: Final = 0.62  # share of the pure colour at an end of a heat map's scale
 _MOST: Final = 150  # points of a curve that are drawn
-
-
-def view_in(box: pygame.FRect, middle: tuple[float, float], metres: float, scale: float) -> View:
-    """Return the view that shows `metres` of width in a box, in points, with `middle` in the middle of the box."""
-    per_metre = box.width / metres
-    aside, below = box.centerx - VIEW_SIZE[0] / 2, box.centery - VIEW_SIZE[1] / 2
-    place = (middle[0] - aside / per_metre, middle[1] + below / per_metre)
-    return View(scale, place, per_metre / POINTS_PER_METRE)
-
-
-@contextmanager
-def inside(canvas: Canvas, box: pygame.FRect) -> Iterator[None]:
-    """Draw nothing outside a box, in points; a context manager."""
-    before = canvas.surface.get_clip()
-    canvas.surface.set_clip(canvas.rect(*box).clip(before))
-    try:
-        yield
-    finally:
-        canvas.surface.set_clip(before)
 
 
 def draw_ground(canvas: Canvas, box: pygame.FRect, view: View) -> None:
@@ -69,32 +46,18 @@ class DrawnLander:
     """Picture of a single lander in its environment; call `follow` after every physics step."""
 
     def __init__(self, env: LanderEnv) -> None:
-        self._env = env
-        self.begin()
-
-    def begin(self) -> None:
-        """Show the lander where it is now, its engines off."""
-        self._poses, self._thrust, self._flicker = Poses(self._env), np.zeros(3), 0
+        self._env, self._thrust, self._flicker = env, np.zeros(3), 0
 
     def follow(self) -> None:
-        """Take the lander's new pose, and ease its flames."""
+        """Ease the lander's flames."""
         fired = int(self._env.fired[0])
         wanted = np.array([fired >= 3, fired % 3 == 2, fired % 3 == 1], float)
         self._thrust += _IGNITE * (wanted - self._thrust)
         self._flicker += 1
-        self._poses.take()
 
-    def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
-        draw_craft(canvas, view, art.LANDER, self._poses.at(alpha)[0], self._thrust, 1.0, self._flicker)
-
-
-def paint_heat(sheet: Canvas, values: Array, low: Colour, high: Colour) -> None:
-    """Fill a sheet with values (columns, rows), the first row at the bottom: `low` at -1, dark at 0, `high` at 1."""
-    share = _DEPTH * np.clip(np.nan_to_num(values), -1.0, 1.0)[:, ::-1, None]
-    ends = np.where(share < 0, np.array(low, float), np.array(high, float))
-    colours = NIGHT0 + np.abs(share) * (ends - NIGHT0)
-    picture = pygame.surfarray.make_surface(colours.astype(np.uint8))
-    sheet.surface.blit(pygame.transform.smoothscale(picture, sheet.size), (0, 0))
+    def draw(self, canvas: Canvas, view: View) -> None:
+        pose = np.array([*self._env.position[0], self._env.angle[0]])
+        draw_craft(canvas, view, art.LANDER, pose, self._thrust, 1.0, self._flicker)
 
 
 def draw_curve(canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colour, length: int) -> None:

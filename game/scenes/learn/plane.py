@@ -20,9 +20,8 @@ from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, SMALL
+from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, NIGHT0, SMALL
 from game.scenes.learn.chapter import Chapter
-from game.scenes.learn.pictures import paint_heat
 from game.ui.context import Context
 from game.ui.panel import Column
 
@@ -34,6 +33,7 @@ NEARLY: Final = 0.95  # share of the points that is nearly all
 _RATE: Final = 0.02
 _GAP: Final = 0.12  # no point is nearer to an axis
 _CELLS: Final = 40
+_DEPTH: Final = 0.62  # share of the pure colour at an end of a picture's scale
 _EVERY: Final = 6  # updates from one picture of the plane to the next
 
 
@@ -77,10 +77,6 @@ class Divided:
     def __init__(self) -> None:
         self._places = _places()
         self.points, self.targets = examples(0)
-        self.restart()
-
-    def restart(self) -> None:
-        """Begin with no hidden units, and forget what was shown."""
         self.units = self._seed = self.version = 0
         self.results: dict[int, int] = {}
         self.begin()
@@ -132,27 +128,17 @@ class PlaneChapter(Chapter):
     """The points, and the plane in the colour of what the network answers there."""
 
     key, door = "plane", Route("train")
+    model: Divided
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._cache = PaintCache(most=2 * max(UNITS) + 4)
         self.model = Divided()
 
-    def restart(self) -> None:
-        self.model.restart()
-        self.tried = False
-
     def controls(self, column: Column) -> None:
         at = UNITS.index(self.model.units)
         column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), at, self.model.choose)
         column.button(texts.LEARN_PLANE_AGAIN, self.model.begin)
-
-    def update(self) -> None:
-        if self.model.step():
-            self.found()
-
-    def verdict(self) -> int | None:
-        return self.model.verdict()
 
     def why(self) -> str:
         return " ".join(
@@ -168,7 +154,7 @@ class PlaneChapter(Chapter):
             size=SMALL,
         )
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         side, points, targets = box.height - 22, self.model.points, self.model.targets
         plane = pygame.FRect(box.left, box.top, side, side)
         self._draw_plane(canvas, plane, -1)
@@ -188,9 +174,16 @@ class PlaneChapter(Chapter):
         self._draw_network(canvas, beside)
 
     def _draw_plane(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
-        colours, values = (canvas.palette.warn, canvas.palette.good), self.model.planes[number]
-        shows = (self.model.version, number % len(self.model.planes))
-        self._cache.draw(canvas, box, shows, lambda sheet: paint_heat(sheet, values, *colours))
+        """Draw what a hidden unit says everywhere, or the output, number -1: `warn` at -1, dark at 0, `good` at 1."""
+        warn, good = (np.array(each, float) for each in (canvas.palette.warn, canvas.palette.good))
+        share = _DEPTH * self.model.planes[number][:, ::-1, None]
+
+        def paint(sheet: Canvas) -> None:
+            colours = NIGHT0 + np.abs(share) * (np.where(share < 0, warn, good) - NIGHT0)
+            picture = pygame.surfarray.make_surface(colours.astype(np.uint8))
+            sheet.surface.blit(pygame.transform.smoothscale(picture, sheet.size), (0, 0))
+
+        self._cache.draw(canvas, box, (self.model.version, number % len(self.model.planes)), paint)
 
     def _draw_network(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw each hidden unit as its own map of the plane, with lines as wide as the weights."""

@@ -10,11 +10,10 @@ from typing import ClassVar, Final
 import numpy as np
 import pygame
 
-from ai.agent.agent import DeepQAgent
 from ai.environment import Doubles
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.rewards import RewardWeights
-from ai.training.config import PRESETS, Config
+from ai.training.config import Config
 from ai.training.small_run import RECENT, SMALL_RUN, Flown, Plan, SmallState, small_runs
 from game.core import texts
 from game.core.scene import Route
@@ -22,10 +21,11 @@ from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, Colour
 from game.explain.figures import percent, points
-from game.scenes.learn.chapter import Chapter, Code
-from game.scenes.learn.pictures import HEAD, draw_axis, draw_curve, draw_landers, inside, view_in
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.pictures import HEAD, draw_axis, draw_curve, draw_landers
 from game.ui.context import Context
 from game.ui.panel import Column
+from game.world.camera import View
 
 PACE: Final = 40.0  # decisions a second: four times as fast as they would fly
 _APART: Final = 2.6  # metres between two landers of the picture
@@ -38,18 +38,20 @@ class RunsChapter(Chapter):
     Attributes:
         choice: what the player has chosen, by its number; `flown` is that of the runs which are shown.
         states: states of all runs, after each decision so far.
+        came: number of the answer that the runs have shown; None before.
 
     """
 
     LENGTH: ClassVar[int] = 600  # decisions after which they stop
     PLAN: ClassVar[Plan] = Plan()
-    first: ClassVar[int] = 0  # the choice that stands there at first
     door = Route("train")
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._worker: Worker | None = None
-        self.restart()
+        self.seed = self.choice = self.flown = 0
+        self.states: list[tuple[SmallState, ...]] = []
+        self.came: int | None = None
 
     @abstractmethod
     def configs(self) -> Sequence[Config]:
@@ -59,26 +61,17 @@ class RunsChapter(Chapter):
     def plan(self) -> Plan:
         return self.PLAN
 
-    def restart(self) -> None:
-        self._forget()
-        self.seed, self.tried, self.choice, self.flown = 0, False, self.first, self.first
-
-    def _forget(self) -> None:
-        self.close()
-        self.states: list[tuple[SmallState, ...]] = []
-
     def choose(self, index: int) -> None:
         """Choose what the next runs are to differ by."""
         self.choice = index
 
     def start(self) -> None:
         """Start the runs with the choice as it is now, from another seed each time."""
-        self._forget()
-        self.flown, self.tried = self.choice, False
+        self.close()
+        self.states, self.flown, self.tried, self.changed = [], self.choice, False, True
         self._worker = Worker(small_runs, tuple(self.configs()), self.seed, self.plan)
         self._worker.set_pace(PACE)
         self.seed += 1
-        self.changed = True
 
     def close(self) -> None:
         if self._worker is not None:
@@ -93,36 +86,30 @@ class RunsChapter(Chapter):
         """Whether the runs have come to their end."""
         return len(self.states) > self.LENGTH
 
-    @property
-    def fault(self) -> str:
-        """Why the worker failed; empty if it did not."""
-        return self._worker.problem if self._worker is not None else ""
-
     def update(self) -> None:
         if self._worker is None or len(self.states) > self.LENGTH:
             return
-        for states in self._worker.poll()[: self.LENGTH + 1 - len(self.states)]:
-            self.take(states)
+        self.states += self._worker.poll()[: self.LENGTH + 1 - len(self.states)]
         if self.over:
             self.close()
-            self.changed = True
             self.finish()
             self.found()
 
+    @abstractmethod
     def finish(self) -> None:
         """Take note that the runs have come to their end."""
 
-    def take(self, states: tuple[SmallState, ...]) -> None:
-        """Take the states after one more decision."""
-        self.states.append(states)
+    def verdict(self) -> int | None:
+        return self.came
 
     def history(self, run: int, name: str) -> Doubles:
         """Return a figure of one run after each decision, by the name of a field of `SmallState`; NaN for None."""
         values = (getattr(states[run], name) for states in self.states)
         return np.array([np.nan if value is None else value for value in values], dtype=float)
 
-    def starter(self, column: Column, label: str) -> None:
-        """Add the button that starts the runs; it is lit while none goes on."""
+    def starter(self, column: Column, choices: Sequence[str], label: str) -> None:
+        """Add what can be chosen, and the button that starts the runs; it is lit while none goes on."""
+        column.choice("", choices, self.choice, self.choose)
         column.button(label, self.start, colour=MUTE if self.running else INK)
 
     def below(self, column: Column) -> None:
@@ -130,16 +117,16 @@ class RunsChapter(Chapter):
         column.text(self._status, size=SMALL, colour=MUTE)
 
     def _status(self) -> str:
-        key = "over" if self.over else "learning" if self.states else "starting" if self.running else "ready"
-        done = self.states[-1][0].decisions if self.states else 0
-        return self.fault or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
+        key = "learning" if self.states else "starting" if self.running else "ready"
+        done, problem = self.states[-1][0].decisions if self.states else 0, self._worker and self._worker.problem
+        return problem or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
 
 
 def draw_side_by_side(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:
     """Draw one-engine landers side by side; only the ground before they fly."""
     metres = _APART * (count + 0.6)
     height = metres * box.height / box.width
-    view = view_in(box, (0.0, height / 2), metres, canvas.scale)
+    view = View.within(box, canvas.scale, (0.0, height / 2), box.width / metres)
     canvas.line(box.bottomleft, box.bottomright, FAINT)
     if flown is None:
         return
@@ -147,7 +134,7 @@ def draw_side_by_side(canvas: Canvas, box: pygame.FRect, flown: Flown | None, fl
     # A picture lower than the sky is squeezed: heights are drawn to a scale of their own.
     squeeze = min(1.0, (height - PARAMS.stand - HEAD) / _SKY)
     poses = np.stack([across, flown.height * squeeze + PARAMS.stand, np.zeros(count)], axis=1)
-    with inside(canvas, box):
+    with canvas.clipped(box):
         draw_landers(canvas, box, view, poses, flown.main & (flown.outcome == Outcome.FLYING), flicker)
 
 
@@ -155,23 +142,14 @@ def draw_side_by_side(canvas: Canvas, box: pygame.FRect, flown: Flown | None, fl
 
 
 class DuelChapter(RunsChapter):
-    """Two agents; the right one is as the player chooses. A chart of one quantity stands below each.
-
-    Attributes:
-        came: number of the answer that the latest runs with the question's choice have shown; None before.
-
-    """
+    """Two agents; the right one is as the player chooses. A chart of one quantity stands below each."""
 
     shape = 0.6
     quantity: ClassVar[str]  # the field of `SmallState` that its chart shows
 
     @abstractmethod
-    def options(self) -> tuple[str, Sequence[str]]:
-        """Return what is chosen, and the words of the choices."""
-
-    @abstractmethod
-    def name(self, run: int, choice: int) -> str:
-        """Return the name of a run, the right one with its choice."""
+    def names(self) -> Sequence[str]:
+        """Return the name of the left agent, and that of the right one for each choice."""
 
     @abstractmethod
     def caption(self, state: SmallState) -> str:
@@ -190,23 +168,14 @@ class DuelChapter(RunsChapter):
         """Share of the latest flights that landed, of each run."""
         return tuple(state.landed or 0.0 for state in self.states[-1])
 
-    def restart(self) -> None:
-        super().restart()
-        self.came: int | None = None
-
-    def verdict(self) -> int | None:
-        return self.came
-
     def controls(self, column: Column) -> None:
-        label, words = self.options()
-        column.choice(label, words, self.choice, self.choose)
-        self.starter(column, texts.LEARN_RUNS_START[bool(self.seed)])
+        self.starter(column, self.names()[1:], texts.LEARN_RUNS_START[bool(self.seed)])
 
-    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         half, shown = (box.width - 32) / 2, self.flown if self.states else self.choice
         for run, colour in enumerate[Colour]((NET, HUMAN)):
-            left = box.left + run * (half + 32)
-            canvas.text(self.name(run, shown), (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
+            left, name = box.left + run * (half + 32), self.names()[run * (shown + 1)]
+            canvas.text(name, (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
             sky = pygame.FRect(left, box.top + 22, half, 0.36 * box.height)
             state = self.states[-1][run] if self.states else None
             draw_side_by_side(canvas, sky, state.flown if state else None, len(self.states))
@@ -217,46 +186,31 @@ class DuelChapter(RunsChapter):
                 canvas.text(self.caption(state), (left, sky.bottom + 20), size=SMALL, tabular=True, room=half)
 
 
-EVERY: Final = (1, 10, 100, 1)  # gradient steps between two copies, to choose from; the last with normalised layers
-NORMALISED: Final = len(EVERY) - 1
+# Of the right-hand agent of `TargetChapter`, to choose from; the left one's target network is a copy made every 100
+# gradient steps. In *modern*, too, the network that learns judges, and its layers are normalised.
+RIGHT: Final = (
+    SMALL_RUN.changed(target_update_interval=1),
+    SMALL_RUN.changed(target_update_interval=1, layer_normalisation=True),
+)
 # No flight from any height below the ceiling can score more points than this: a landing is paid 120, and all else,
 # coming down, slowing down and both feet, at most 160.
 BOUND: Final = 300.0
 _TOP: Final = 10.0  # points of the scale of values that are linear; beyond, it is logarithmic
-_HIGHEST, _LOWEST = 1e7, -1e2
+_HIGHEST: Final = 1e7
 _TICKS: Final = ((0.0, "0"), (1e3, "1,000"), (1e5, "100,000"), (1e7, "10,000,000"))
 _MORE: Final = 0.2  # share of landings by which one agent is better than another
 
 
-def config_of(choice: int) -> Config:
-    """Return the configuration of the right-hand agent of `TargetChapter`, by an index into `EVERY`."""
-    return SMALL_RUN.changed(target_update_interval=EVERY[choice], layer_normalisation=choice == NORMALISED)
-
-
 class TargetChapter(DuelChapter):
-    """A guess from a guess: the left agent's target network is a copy made every 100 gradient steps."""
+    """A guess from a guess: the left agent has a target network, the right one asks the network that changes."""
 
     key, quantity = "target", "value"
 
-    @property
-    def words(self) -> dict[str, str]:
-        """The chapter's texts, and how these runs differ from those of Train."""
-        words, modern, ours = super().words, PRESETS["modern"], self.configs()[0]
-        steps, further = (texts.LEARN_SMALL_STEPS.format(count=each.n_step) for each in (ours, modern))
-        differs = texts.LEARN_SMALL.format(
-            steps=steps, modern_steps=further, batch=ours.batch_size, modern_batch=modern.batch_size
-        )
-        return {**words, "differs": differs}
-
     def configs(self) -> Sequence[Config]:
-        return SMALL_RUN, config_of(self.choice)
+        return SMALL_RUN, RIGHT[self.choice]
 
-    def options(self) -> tuple[str, Sequence[str]]:
-        return texts.LEARN_TARGET_LABEL, [*map(str, EVERY[:NORMALISED]), texts.LEARN_TARGET_NORMALISED]
-
-    def name(self, run: int, choice: int) -> str:
-        usual, some, always, normalised = texts.LEARN_TARGET_NAMES
-        return {0: always, NORMALISED: normalised}.get(choice, some.format(every=EVERY[choice])) if run else usual
+    def names(self) -> Sequence[str]:
+        return texts.LEARN_TARGET_NAMES
 
     @property
     def peaks(self) -> tuple[float, ...]:
@@ -271,29 +225,18 @@ class TargetChapter(DuelChapter):
 
     def why(self) -> str:
         (usual, other), (least, peak) = map(percent, self.landed), map(_figure, self.peaks)
-        key = "ran" if self.peaks[1] > BOUND else "kept"
-        sentence = texts.LEARN_TARGET_WHY[key].format(peak=peak, usual=least, bound=f"{BOUND:g}")
-        return f"{sentence} {texts.LEARN_TARGET_LANDED.format(usual=usual, other=other)}"
-
-    def code(self) -> Code:
-        every = texts.LEARN_TARGET_EVERY.format(every=EVERY[self.choice])
-        return Code(DeepQAgent._update_target, "gradient_steps", every)
+        return texts.LEARN_TARGET_WHY.format(peak=peak, least=least, usual=usual, other=other)
 
     def caption(self, state: SmallState) -> str:
-        expects = texts.LEARN_TARGET_EXPECTS.format(points=_figure(state.value))
-        return expects if state.landed is None else f"{expects}, {_landed(state)}"
+        return texts.LEARN_TARGET_EXPECTS.format(points=_figure(state.value))
 
     def heights(self, values: Doubles) -> Doubles:
-        low, value, high = (
-            np.sign(each) * np.log10(1 + np.abs(each) / _TOP)
-            for each in (np.array(_LOWEST), values, np.array(_HIGHEST))
-        )
-        height: Doubles = np.clip((value - low) / (high - low), 0.0, 1.0)
+        value, high = (np.log10(1 + np.maximum(each, 0.0) / _TOP) for each in (values, np.array(_HIGHEST)))
+        height: Doubles = np.minimum(value / high, 1.0)
         return height
 
     def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
         draw_axis(canvas, box, [(float(self.heights(np.array(tick))), word) for tick, word in _TICKS])
-        canvas.text(" ".join(texts.CHART_LOG), (box.left + 4, box.top + 14), size=CAPTION, colour=MUTE)
         y = box.bottom - box.height * float(self.heights(np.array(BOUND)))
         canvas.line((box.left, y), (box.right, y), MUTE, 1.5)
         said = texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}")
@@ -302,7 +245,7 @@ class TargetChapter(DuelChapter):
         canvas.text(said, (box.right, y - 6), size=CAPTION, colour=MUTE, align="right", room=box.width)
 
 
-DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions, to choose from
+DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions: of the left agent, and of the right one to choose
 # Nothing is paid for coming nearer or slower: only time, fuel, feet on the pad and the end count.
 PAY: Final = RewardWeights(distance=0.0, speed=0.0, alignment=0.0, tilt=0.0)
 _LEARNED: Final = 0.5  # share of flights that land, from which an agent has learned it
@@ -311,48 +254,39 @@ _LEARNED: Final = 0.5  # share of flights that land, from which an agent has lea
 class DaringChapter(DuelChapter):
     """Daring: the left agent never takes a random action, the right one as often as chosen."""
 
-    key, first, quantity = "daring", 1, "landed"
+    key, quantity = "daring", "landed"
     PLAN = Plan(heights=(5.0, 8.0))
 
     def configs(self) -> Sequence[Config]:
         return [
             SMALL_RUN.changed(n_step=5, reward_weights=PAY, epsilon_start=share, epsilon_end=share)
-            for share in (DARING[0], DARING[self.choice])
+            for share in (DARING[0], DARING[self.choice + 1])
         ]
 
-    def options(self) -> tuple[str, Sequence[str]]:
-        return texts.LEARN_DARING_LABEL, list(map(percent, DARING))
-
-    def name(self, run: int, choice: int) -> str:
-        return texts.LEARN_DARING_NAMES[run].format(share=percent(DARING[choice]))
+    def names(self) -> Sequence[str]:
+        return [texts.LEARN_DARING_NAMES[share > 0].format(share=percent(share)) for share in DARING]
 
     def finish(self) -> None:
-        if self.flown == self.first:
+        if self.flown == 0:
             never, other = (landed >= _LEARNED for landed in self.landed)
             self.came = 2 if never and other else 0 if never else 1 if other else 3
 
     def why(self) -> str:
         never, other = map(percent, self.landed)
-        share = percent(DARING[self.flown])
+        share = percent(DARING[self.flown + 1])
         return texts.LEARN_DARING_WHY.format(share=share, never=never, other=other, decisions=self.LENGTH)
-
-    def code(self) -> Code:
-        return Code(DeepQAgent.act, "explore", f"ε = {DARING[self.choice]:g}")
 
     def caption(self, state: SmallState) -> str:
         if state.landed is None:
             return texts.LEARN_RUNS_NOTHING
-        return texts.LEARN_RUNS_FLIGHTS.format(count=min(state.flights, RECENT), landed=_landed(state))
+        landed = texts.LEARN_RUNS_LANDED.format(share=percent(state.landed))
+        return texts.LEARN_RUNS_FLIGHTS.format(count=min(state.flights, RECENT), landed=landed)
 
     def heights(self, values: Doubles) -> Doubles:
         return values
 
     def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
         draw_axis(canvas, box, [(share, percent(share)) for share in (0.0, 0.5, 1.0)])
-
-
-def _landed(state: SmallState) -> str:
-    return texts.LEARN_RUNS_LANDED.format(share=percent(state.landed or 0.0))
 
 
 def _figure(value: float) -> str:

@@ -16,24 +16,20 @@ from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Lande
 from ai.nn import NeuralNetwork
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.drawing.tokens import INK, SMALL
 from game.explain.figures import decimal, points, what_is_sensed
 from game.explain.tables import Line, figure_rows, from_zero, table
-from game.scenes.lesson.card import Card, in_points
+from game.scenes.lesson.card import Card
 from game.ui.panel import Column
-from game.world.camera import HOME, POINTS_PER_METRE, View
+from game.world.camera import HOME, WORLD_WIDTH, View
 from game.world.craft import draw_craft
 from game.world.lander import LANDER
-from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
 
 _LEAST, _HIGH = 300.0, 300.0  # width of a column, height of the picture
 _ARROW: Final = 9.0  # points of the velocity's arrow for each metre per second
-_MOON: Final = 5
 _DIGITS: Final = (2, 2, 2, 2, 3, 3, 3)
 _UNITS: Final = (0, 0, 1, 1, None, None, 2)  # of each feature, among the texts; None for a plain number
-_HEIGHT: Final = 1  # number of the feature
 
 
 def said_action(action: int) -> str:
@@ -57,16 +53,11 @@ def sensed(value: float, feature: int) -> str:
 
 def moment_card(lesson: Lesson) -> Card:
     """Return the card of the moment: where the lander is, and the nine numbers that say so."""
-    units, cache = in_units(lesson.cell.state).tolist(), PaintCache()
-
-    def draw(canvas: Canvas, box: pygame.FRect) -> None:
-        wide = min(box.width, box.height * VIEW_SIZE[0] / VIEW_SIZE[1])
-        high = wide * VIEW_SIZE[1] / VIEW_SIZE[0]
-        cache.draw(canvas, (*box.topleft, wide, high), (), partial(_paint, wide, units))
+    units = in_units(lesson.cell.state).tolist()
 
     def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
-        left.picture(_HIGH, draw)
+        left.picture(_HIGH, partial(_draw_moment, units))
         lines = [
             Line((name, sensed(units[feature], feature)), what_is_sensed(feature))
             for feature, name in enumerate(texts.INPUTS)
@@ -74,25 +65,18 @@ def moment_card(lesson: Lesson) -> Card:
         right.add(table((), lambda: lines))
 
     words, slot = texts.LESSON_CARDS["moment"], lesson.flown.slot + 1 if lesson.flown else 1
-    return Card(words[0], words[1].format(slot=slot), sensed(units[_HEIGHT], _HEIGHT), (LanderEnv.observe,),
-                describe=describe)  # fmt: skip
+    return Card(words[0], words[1].format(slot=slot), LanderEnv.observe, describe=describe)
 
 
-def _paint(width: float, units: list[float], canvas: Canvas) -> None:
-    """Paint the moon with the lander and an arrow for its velocity, on a sheet of that width."""
-    share = width / VIEW_SIZE[0]
-    moon = pygame.Surface(canvas.size)
-    Backdrop(canvas.size, np.random.default_rng(_MOON), reduced_motion=True).paint(moon)
-    canvas.surface.blit(moon, (0, 0))
-    span = (1 - share) / (2 * share * POINTS_PER_METRE)
-    view = View(canvas.scale, (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1]), share)
-    draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+def _draw_moment(units: list[float], canvas: Canvas, box: pygame.FRect) -> None:
+    """Draw the pad, the lander, and an arrow for its velocity."""
+    view = View.within(box, canvas.scale, HOME, box.width / WORLD_WIDTH)
     place = np.array([units[0], units[1] + PARAMS.pad_top + PARAMS.stand])
-    draw_craft(canvas, view, LANDER, np.array([*place, math.atan2(units[4], units[5])]), np.zeros(3), 1.0, 0, 1.5)
     (x, y), across, up = view.points(place).tolist(), units[2] * _ARROW, units[3] * _ARROW
-    if math.hypot(across, up) > 2:
+    with canvas.clipped(box):
+        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+        draw_craft(canvas, view, LANDER, np.array([*place, math.atan2(units[4], units[5])]), np.zeros(3), 1.0, 0, 1.5)
         canvas.line((x, y), (x + across, y - up), INK, 1.5)
-        canvas.dot((x + across, y - up), 2.5, INK)
 
 
 def values_card(lesson: Lesson) -> Card:
@@ -100,18 +84,17 @@ def values_card(lesson: Lesson) -> Card:
     values = (lesson.predicted / lesson.config.reward_scale).tolist()
     taken, best = int(lesson.cell.action), int(lesson.predicted.argmax())
     lines = [
-        Line((said_action(action), points(value)), texts.LESSON_VALUE_HELP, lit=action == taken,
+        Line((said_action(action), points(value)), lit=action == taken,
              bars=[from_zero(value, min(values), max(values))])
         for action, value in enumerate(values)
     ]  # fmt: skip
     words, why = texts.LESSON_CARDS["values"], texts.LESSON_TAKEN[taken == best]
-    said = why.format(action=said_action(taken), value=points(values[taken]), best=said_action(best),
-                      higher=points(values[best]))  # fmt: skip
+    said = why.format(action=said_action(taken), best=said_action(best))
 
     def describe(column: Column) -> None:
         column.beside((1, 1), _LEAST)[0].add(table((), lambda: lines))
 
-    return Card(words[0], f"{words[1]} {said}", in_points(values[taken]), (NeuralNetwork.predict,), describe=describe)
+    return Card(words[0], f"{words[1]} {said}", NeuralNetwork.predict, describe=describe)
 
 
 def came_card(lesson: Lesson) -> Card:
@@ -122,36 +105,30 @@ def came_card(lesson: Lesson) -> Card:
 
     def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
-        lines = _decisions(flown, discount) if flown else []
         words = texts.LESSON_RETURN.format(discount=f"{discount:g}", count=count)
-        whole = Line((words, *[""] * (2 if flown else 0), points(pay)), texts.LESSON_RETURN_HELP, lit=True)
+        whole = Line((words, *[""] * (2 if flown else 0), points(pay)), lit=True)
+        lines = _decisions(flown, discount) if flown else []
         left.add(table(texts.LESSON_PAY if flown else (), lambda: [*lines, whole]))
-        if flown is None:
-            left.aside(texts.LESSON_NOT_KNOWN)
-        elif flown.outcome != Outcome.FLYING:
+        if flown and flown.outcome != Outcome.FLYING:
             left.text(texts.LESSON_OUTCOMES[flown.outcome - 1], size=SMALL)
         changes = [
-            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)), what_is_sensed(feature))
+            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)))
             for feature, name in enumerate(texts.INPUTS)
         ]
         head = (texts.LESSON_AFTER.format(count=count), texts.LESSON_BEFORE, texts.LESSON_NOW)
         right.add(table(head, lambda: changes))
 
     words = texts.LESSON_CARDS["came"]
-    return Card(words[0], words[1], in_points(pay), (NStep.add,), "self._returns", describe)
+    return Card(words[0], words[1], NStep.add, "self._returns", describe)
 
 
 def _decisions(flown: Flown, discount: float) -> list[Line]:
     """Return a line for each decision: its action, its pay, how much that counts, and that much of it."""
     lines = []
     for place, (action, pay) in enumerate(zip(flown.actions.tolist(), flown.rewards.tolist(), strict=True)):
-        words = (texts.REWARD_PARTS.get(name, (name,))[0] for name in flown.parts)
-        parts = [
-            (word, points(float(paid[place])))
-            for word, paid in zip(words, flown.parts.values(), strict=True)
-            if paid[place]
-        ]
+        names = {name: texts.REWARD_PARTS.get(name, (name,))[0] for name in flown.parts}
+        parts = ((names[name], points(float(paid[place]))) for name, paid in flown.parts.items() if paid[place])
         factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
         cells = (said_action(action), points(pay), f"× {factor:.4f}", points(pay * factor))
-        lines.append(Line(cells, what, figure_rows(*parts, (texts.LESSON_IN_ALL, points(pay)))))
+        lines.append(Line(cells, what, figure_rows(*parts)))
     return lines

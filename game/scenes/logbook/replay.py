@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Hashable
-from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -25,13 +24,13 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
 from game.explain import readouts
 from game.explain.explained import Explained
+from game.explain.readouts import PILOT
 from game.export.film import Export, films_dir
 from game.flight import codes, networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
-from game.flight.foresight import SixFutures
 from game.flight.outcomes import ending_word
-from game.flight.replay import FlightReplay, flown_elsewhere
+from game.flight.replay import FlightReplay
 from game.input.controls import Command
 from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
@@ -39,15 +38,13 @@ from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.ui.rows import ButtonRow, ChoiceRow
-from game.ui.widget import OnPress
 from game.ui.world_scene import WorldScene
 from game.world.camera import ClearArea, View
 from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
-from game.world.paths import draw_faint, draw_futures
+from game.world.paths import draw_faint
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
-_AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _OPEN: Final = "replay"  # what stays open, by its name in the settings
 _SECONDS: Final = 22.0  # size of the moment that is shown
@@ -58,7 +55,6 @@ class ReplayScene(WorldScene):
 
     Attributes:
         friend: what a friend has sent; None for a flight of the player's own.
-        export: the film that is being made of it; None while there is none.
 
     """
 
@@ -69,11 +65,7 @@ class ReplayScene(WorldScene):
         self.record, self.friend = record, friend
         self._pace = TimeScale()
         self.playback = Playback(self._pace, SPEEDS, self._fly)
-        self._warned = False
-        self._looked = -1  # the step of which the futures are
-        self._futures: SixFutures | None = None
         self.explained = Explained()
-        self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
         self._readouts = readouts.flight_readouts(self.flight_replay.flight.env)
@@ -88,10 +80,6 @@ class ReplayScene(WorldScene):
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
-    def close(self) -> None:
-        if self.export:
-            self._stop_export()
-
     def actions(self) -> Table:
         stop, step, *speeds = self.playback.actions(
             texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
@@ -99,7 +87,7 @@ class ReplayScene(WorldScene):
         on_strip = self.form.focused is self._strip
         if self.context.controls.gamepad_in_use and not on_strip:  # its A presses what is in focus
             stop = self.form.confirms(texts.HINT_CHOOSE)
-        table = [
+        return [
             stop,
             step,
             self.explained.action(),
@@ -107,24 +95,13 @@ class ReplayScene(WorldScene):
             Action(Command.RETRY, self._replay),
             Action(Command.HANDOVER, self._take_over),
             *speeds,
-            Action(pygame.K_HOME, lambda: self.go_to(0)),
-            Action(pygame.K_END, lambda: self.go_to(self.flight_replay.length)),
         ]
-        if on_strip or self.context.controls.gamepad_in_use:
-            winds = ((Command.NEXT, 60), (Command.PREVIOUS, -60))
-            table += [Action(command, partial(self._wind, steps)) for command, steps in winds]
-        return table
 
     def update(self) -> Transition | None:
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
-        self._look_ahead()
         self._strip.reached = self.flight_replay.reached
         self.explained.update()
-        if self.export:
-            self._follow_export(self.export)
-        if not self.friend and self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
-            self._warned = True
-            self.context.note(texts.REPLAY_OTHER_RULES)
+        self._export_word.label = self._export_words
         for _ in range(self.playback.steps()):
             self._fly()
         if not self.playback.stopped:
@@ -139,25 +116,6 @@ class ReplayScene(WorldScene):
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
-
-    def _look_ahead(self) -> None:
-        """Fly the six futures of the moment that is shown, if somebody asks what there is and nothing moves."""
-        flight = self.flight_replay.flight
-        if not self.explained.stepping or flight.over or not self.playback.stopped:
-            self._futures = None
-            return
-        if self._futures is None or self._looked != self.flight_replay.at:
-            context, self._looked = self.context, self.flight_replay.at
-            elsewhere = flown_elsewhere(self.record.recording)
-            policy = networks.chosen(context.models_dir, context.user_dir, context.settings.model, elsewhere).policy
-            if policy is None:
-                return
-            self._futures = SixFutures(policy, flight.route)
-            self._futures.begin(flight.env)
-        self._futures.follow(_AHEAD)
-
-    def _wind(self, steps: int) -> None:
-        self.go_to(self.flight_replay.at + steps)
 
     @property
     def ended(self) -> bool:
@@ -194,22 +152,22 @@ class ReplayScene(WorldScene):
 
     def describe(self) -> None:
         """Add which flight it is, and its moment; the read-outs, the strip, and what can be done with the flight."""
-        head, foot, recording = self.head, self.foot, self.record.recording
+        head, foot = self.head, self.foot
         head.aside(lambda: self._titles()[0])
         head.text(lambda: self._titles()[1])
         head.add(self._write_moment)
-        foot.add(lambda cursor: readouts.write_readouts(cursor, self._readouts))
-        flown = [push.action for push in recording.pushes], recording.hands
-        self._strip = foot.widget(Timeline(texts.REPLAY_LANES, *flown, self.go_to, self._stop_or_go))
+        foot.add(lambda cursor: readouts.write_readouts(cursor, {name: self._readouts[name] for name in PILOT}))
+        self._strip = foot.widget(Timeline(self.record.recording, self.go_to, self._stop_or_go))
         more = self.context.settings.is_open(_OPEN)
         race = texts.FRIEND_ANSWER if self.friend else texts.LOGBOOK_RACE
-        words: list[tuple[str, OnPress]] = [(texts.REPLAY_TAKE_OVER, self._take_over), (race, self._race)]
+        self._export_word = ButtonRow(self._export_words, self._begin_or_stop_export, size=SMALL)
+        rows: list[ButtonRow | ChoiceRow] = [
+            ButtonRow(texts.REPLAY_TAKE_OVER, self._take_over, size=SMALL),
+            ButtonRow(race, self._race, size=SMALL),
+        ]
         if more:
-            words += [(texts.CODE_COPY, self._copy), (self._export_words, self._begin_or_stop_export)]
-        rows: list[ButtonRow | ChoiceRow] = [ButtonRow(label, press, size=SMALL) for label, press in words]
-        self._export_word = rows[-1]
-        rows += [self.playback.choice()] if more else []
-        rows.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
+            rows += [ButtonRow(texts.CODE_COPY, self._copy, size=SMALL), self._export_word, self.playback.choice()]
+        rows.append(ButtonRow(texts.MORE[more], lambda: self.context.unfold(_OPEN), size=SMALL))
         rows[-1].key = "more"
         foot.flow(rows)
 
@@ -221,9 +179,6 @@ class ReplayScene(WorldScene):
         if (clear := ClearArea.of(self.context.reading(), self.free)) != self._scenery.clear:
             self._scenery.clear = clear
             self._scenery.cut()
-
-    def _open_more(self) -> None:
-        self.context.unfold(_OPEN)
 
     def _take_over(self) -> Transition | None:
         if self.flight_replay.flight.over:
@@ -245,36 +200,21 @@ class ReplayScene(WorldScene):
         give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
-        if self.export:
-            self._stop_export()
+        context = self.context
+        if context.film:
+            context.film.close()
+            context.film = None
+            context.note(texts.EXPORT_STOPPED)
             return
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
         path = free_path(films_dir(), name or texts.REPLAY_TITLE, ".gif")
-        self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
+        context.film = Export(ReplayScene, self.record, path, colour_safe=context.settings.colour_safe)
 
     @property
     def _export_words(self) -> str:
         """What a press on the film's word does now."""
-        share = self.export.share if self.export else 0.0
-        return texts.EXPORT_GOES_ON.format(percent=round(100 * share)) if self.export else texts.REPLAY_EXPORT
-
-    def _stop_export(self) -> None:
-        assert self.export is not None
-        self.export.close()
-        self._end_export(texts.EXPORT_STOPPED)
-
-    def _follow_export(self, export: Export) -> None:
-        export.poll()
-        self._export_word.label = self._export_words
-        if export.over:
-            failed = texts.EXPORT_FAILED.format(reason=export.problem)
-            export.close()
-            self._end_export(failed if export.problem else texts.EXPORT_DONE.format(path=export.path))
-
-    def _end_export(self, note: str) -> None:
-        self.export = None
-        self._export_word.label = self._export_words
-        self.context.note(note)
+        film = self.context.film
+        return texts.EXPORT_GOES_ON.format(percent=round(100 * film.share)) if film else texts.REPLAY_EXPORT
 
     # The picture
 
@@ -286,17 +226,15 @@ class ReplayScene(WorldScene):
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world with its read-outs, and without any words: for a film."""
-        foot = readouts.foot_of(canvas.reading, self._readouts)
+        foot = readouts.foot_of(canvas.reading, PILOT)
         self._draw_world(canvas.above(canvas.reading.view.bottom - foot.top), alpha)
-        readouts.draw_flight(canvas.reading, self._readouts)
+        readouts.draw_flight(canvas.reading, self._readouts, PILOT)
 
     def _draw_world(self, canvas: Canvas, alpha: float) -> None:
         between, head = self.playback.between(alpha), self._scenery.clear.head
         view = self._scenery.view(canvas.scale, between).filling(canvas)
         self._scenery.draw_land(canvas, between, self._scenery.clear.earth(EARTH, EARTH_RADIUS))
         _draw_way(canvas, view, self.flight_replay, head)
-        if self._futures:
-            draw_futures(canvas, view, self._futures, head)
         self._scenery.draw_craft(canvas, between)
 
     def _titles(self) -> tuple[str, str]:
@@ -309,6 +247,7 @@ class ReplayScene(WorldScene):
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
         title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
+        title = title if self.flight_replay.faithful else texts.REPLAY_OTHER_RULES
         end = ending_word(entry.outcome, intact=entry.intact)
         return title, texts.REPLAY_LINE.format(end=end, seconds=entry.seconds, when=when)
 

@@ -1,4 +1,4 @@
-"""What an exhibit is: a room with bodies that follow a law, live labels, and what is said of it."""
+"""What an exhibit is: a room with bodies that follow a law, live labels, and figures of it."""
 
 from __future__ import annotations
 
@@ -8,18 +8,16 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
+from engine import DT, Body, Polygon, Shape, World
 from engine.shapes import Point
 from engine.vector import Array, cross, rotate
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import MUTE, SMALL
+from game.drawing.tokens import MUTE, SMALL, Colour
 from game.world.camera import View
 
 CLEAR: Final = 0.35  # height that is seen above the ground, as a share of the room's width
 BELOW: Final = 0.05  # and below it
 _WALL: Final = 12.0  # metres; in a step nothing moves so far that it would be pressed out on the other side
-_FIXED, _BOXES, _DISCS = range(3)  # layers
-_BESIDE: Final = 6.0  # points between a body's edge and its words
 # Of a grip: its spring's rad/s, its damping, 1 being critical, and its greatest m/s²: a hand throws, it tears nothing.
 _PACE, _DAMPING, _STRONGEST = 12.0, 0.8, 150.0
 
@@ -57,17 +55,13 @@ class Grip:
 class Label:
     """Words in the room, centred on a place in metres, or at that offset from a body.
 
-    Attributes:
-        reach: metres from a body's middle to its edge, beside which the words begin; 0 for words that are centred.
-        within: whether the value is within its limit, shown by a mark beside the words; None for no mark.
-
+    `within` says whether its value is within its limit, shown by a mark beside the words; None for no mark.
     """
 
     text: str
     place: tuple[float, float]
     body: Body | None = None
     within: bool | None = None
-    reach: float = 0.0
 
     def draw(self, canvas: Canvas, view: View, poses: Array) -> None:
         """Draw it with its mark; `poses` (bodies, 3) are as drawn."""
@@ -75,10 +69,6 @@ class Label:
         if self.body is not None:
             place = place + poses[self.body.index, :2]
         x, y = view.points(place).tolist()
-        if self.reach:
-            beside = x + self.reach * view.pixels_per_metre / canvas.scale + _BESIDE
-            canvas.text(self.text, (beside, y + 4), size=SMALL, colour=MUTE, tabular=True)
-            return
         left = canvas.text(self.text, (x, y + 4), size=SMALL, colour=MUTE, align="centre", tabular=True).left - 10
         if self.within:
             canvas.dot((left, y), 2.5, canvas.palette.good)
@@ -103,6 +93,15 @@ class Quantity:
     step: float
 
 
+@dataclass(frozen=True)
+class Drawn:
+    """A body that is seen: its outline, and the colour of that."""
+
+    body: Body
+    shape: Shape
+    colour: Colour
+
+
 class Exhibit:
     """One law of the engine, in a room of its own: a floor at y = 0, walls and a ceiling at the edges of the view.
 
@@ -110,10 +109,10 @@ class Exhibit:
         name: its name in `texts.EXHIBITS`.
         width, height: of the room, in metres.
         values: the quantities, by name.
-        sprites: all that is drawn, by the image keys of `game.scenes.physics.bodies`.
+        drawn: all bodies that are seen.
         bodies: the movable bodies.
         rules: reference lines at known heights or places, as start and end in metres.
-        touched: by body, (bodies,), whether a hand has moved it, or it has met one that a hand had moved.
+        touched: whether a hand has moved anything.
 
     """
 
@@ -125,10 +124,10 @@ class Exhibit:
         self.gravity = gravity
         self.values = {each.name: each.start for each in self.quantities} | dict(values or {})
         self.world = World((0.0, -gravity))
-        self.sprites: list[Sprite] = []
+        self.drawn: list[Drawn] = []
         self.bodies: list[Body] = []
         self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
-        self.steps = 0
+        self.steps, self.touched = 0, False
         self.height = CLEAR * self.width
         # All four reach past the corners, where the nearest way out would else lead along one of them.
         side, plate = (self.width + _WALL) / 2, Polygon.box(self.width + 2 * _WALL, _WALL)
@@ -137,7 +136,6 @@ class Exhibit:
             self.world.add(Polygon.box(_WALL, self.height + 2 * _WALL), (x, self.height / 2), static=True)
         self.world.add(plate, (0.0, self.height + _WALL / 2), static=True, friction=0.0)
         self.build()
-        self.touched = np.zeros(self.world.state.pose.shape[1], dtype=bool)
 
     # What each exhibit says
 
@@ -146,15 +144,10 @@ class Exhibit:
         raise NotImplementedError
 
     def observe(self) -> None:
-        """Take note of what is said of it, after each step."""
-
-    @property
-    def state(self) -> str:
-        """Key of the sentence in `texts.EXHIBITS` that is true now: what was true before an impact may not be after."""
-        return "always"
+        """Measure, after each step in which no hand has come to it yet."""
 
     def figures(self) -> dict[str, float]:
-        """Return the figures quoted in that sentence, by their names there."""
+        """Return the figures quoted in its sentence, by their names there."""
         raise NotImplementedError
 
     def labels(self) -> list[Label]:
@@ -168,36 +161,19 @@ class Exhibit:
         if grip:
             grip.target = np.clip(grip.target, (-self.width / 2, 0.0), (self.width / 2, self.height))
             grip.pull()
-            self.touched[grip.body.index] = True
+            self.touched = True
         self.world.step()
         self.steps += 1
-        self._hand_on_touch()
-        self.observe()
+        if not self.touched:
+            self.observe()
 
-    def _hand_on_touch(self) -> None:
-        """Mark bodies that have met a touched one as touched too; floor and walls pass nothing on."""
-        contacts = self.world.contacts
-        if contacts is None or not self.touched.any():
-            return
-        pairs = contacts.body[self.world.params.dynamic[contacts.body].all(axis=1)]
-        met = pairs[self.touched[pairs].any(axis=1)]
-        while not self.touched[met].all():
-            self.touched[met] = True
-            met = pairs[self.touched[pairs].any(axis=1)]
-
-    def add(self, shape: Shape, position: Point, image: str, **physics: Any) -> Body:
+    def add(self, shape: Shape, position: Point, colour: Colour, **physics: Any) -> Body:
         """Add a visible body, its shape's middle at `position`; `physics` are keyword arguments of `World.add`."""
         body = self.world.add(shape, position, **physics)
-        disc = isinstance(shape, Circle)
-        wide, high = (2 * shape.radius,) * 2 if isinstance(shape, Circle) else np.ptp(shape.vertices, axis=0).tolist()
-        self.sprites.append(Sprite(body, image, (wide, high), _FIXED if body.static else _DISCS if disc else _BOXES))
+        self.drawn.append(Drawn(body, shape, colour))
         if not body.static:
             self.bodies.append(body)
         return body
-
-    def is_touched(self, body: Body) -> bool:
-        """Whether a hand has come to this body."""
-        return bool(self.touched[body.index])
 
     @property
     def poses(self) -> Array:
@@ -219,13 +195,12 @@ class Exhibit:
         moving = inverse > 0
         return self.kinetic_energy + self.gravity * float((heights[moving] / inverse[moving]).sum())
 
-    def push(self, *bodies: Body) -> float:
-        """Return the last step's normal force, in newtons: between two bodies, or of all others on a single one."""
+    def push(self, body: Body) -> float:
+        """Return the last step's normal force of all others on a body, in newtons."""
         contacts = self.world.contacts
         if contacts is None:
             return 0.0
-        rows = np.all([(contacts.body == body.index).any(axis=1) for body in bodies], axis=0)
-        return float(contacts.impulse[rows, :2].sum()) / DT
+        return float(contacts.impulse[(contacts.body == body.index).any(axis=1), :2].sum()) / DT
 
 
 def height(body: Body) -> float:

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 import numpy as np
 
 from engine import Body, Circle, Polygon
 from game.core import texts
-from game.scenes.physics.exhibit import Exhibit, Label, Quantity, height, speed
+from game.drawing.tokens import EMBER, FAINT, INK, MUTE
+from game.scenes.physics.exhibit import Exhibit, Label, Quantity, speed
 from game.scenes.physics.falls import Bounce, DragRace, Slopes
 
 _SEED: Final = 3
-_AT_REST: Final = 60  # steps until contact impulses, which start at zero, carry ten boxes
-_SQUARE: Final = 0.1  # tolerance of a box in a column: radians, and shares of a box's side
 _MOVES: Final = 0.05  # metres per second, from which a disc counts as moving
 
 
@@ -34,37 +32,14 @@ class Stack(Exhibit):
             count = self.base - level
             for number in range(count):
                 self._box(6.4 + 1.05 * self.box * (number - (count - 1) / 2), level)
-        self.ball = self.add(Circle(0.7), (-10.5, 0.7), "ember-disc", mass=4.0, friction=0.6, restitution=0.2)
+        self.ball = self.add(Circle(0.7), (-10.5, 0.7), EMBER, mass=4.0, friction=0.6, restitution=0.2)
 
     def _box(self, x: float, level: int) -> Body:
-        return self.add(Polygon.box(self.box, self.box), (x, (level + 0.5) * self.box), "box", friction=0.6)
-
-    @property
-    def state(self) -> str:
-        """State of the columns: two boxes or more, at rest, are "standing"."""
-        if self.steps < _AT_REST and not self.touched.any():
-            return "begun"
-        return "standing" if len(self.standing()) > 1 else "fallen"
+        return self.add(Polygon.box(self.box, self.box), (x, (level + 0.5) * self.box), MUTE, friction=0.6)
 
     def figures(self) -> dict[str, float]:
-        standing = self.standing()
-        weighed, push = standing, self.push(self.floor, standing[0]) if standing else 0.0
-        if len(standing) <= 1:
-            weighed, push = self.bodies, self.push(self.floor)
-        return {"count": len(weighed), "weight": self.gravity * sum(body.mass for body in weighed), "push": push}
-
-    def standing(self) -> list[Body]:
-        """Return the boxes of the highest column whose boxes lie squarely on each other."""
-        return max((column[: self._height(column)] for column in self.columns), key=len)
-
-    def _height(self, column: list[Body]) -> int:
-        """Return the number of boxes, from the ground up, that are in place or have moved as one."""
-        x, y, angle = self.world.state.pose[0, [box.index for box in column]].T
-        lean = np.abs((angle + np.pi / 4) % (np.pi / 2) - np.pi / 4)
-        level = np.abs(y - self.box * (np.arange(len(column)) + 0.5))
-        aside = np.abs(np.diff(x, prepend=x[0]))
-        moved = (lean > _SQUARE) | (np.maximum(level, aside) > _SQUARE * self.box)
-        return int(moved.argmax()) if moved.any() else len(column)
+        weight = self.gravity * sum(body.mass for body in self.bodies)
+        return {"count": len(self.bodies), "weight": weight, "push": self.push(self.floor)}
 
 
 class Heap(Exhibit):
@@ -83,17 +58,11 @@ class Heap(Exhibit):
             place = (x, 1.0 + 1.26 * row)
             surface = {"angle": rng.uniform(0, 2 * np.pi), "friction": self.values["rubbing"]}
             if rng.random() < 0.4:
-                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), place, "ember-disc", **surface)
+                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), place, EMBER, **surface)
             else:
                 wide, tall = rng.uniform(0.55, 0.95, 2)
-                image = "bright-box" if rng.random() < 0.15 else "box"
-                self.add(Polygon.box(wide, tall), place, image, **surface)
+                self.add(Polygon.box(wide, tall), place, INK if rng.random() < 0.15 else MUTE, **surface)
         self.at_first = self.energy
-
-    @property
-    def state(self) -> str:
-        """State of the energy: "untouched" while all lost energy has become heat."""
-        return "touched" if self.touched.any() else "untouched"
 
     def figures(self) -> dict[str, float]:
         return {"first": self.at_first, "left": self.energy}
@@ -119,42 +88,29 @@ class Impacts(Exhibit):
         pitch = 2 * self.radius + self.gap
         for number, rail in enumerate(self.rails):
             if rail:
-                self.add(Polygon.box(self.width, 0.12), (0.0, rail - 0.06), "rail", static=True)
+                self.add(Polygon.box(self.width, 0.12), (0.0, rail - 0.06), FAINT, static=True)
             strikers = [self._disc(-7.0 - pitch * k, rail, self.pace) for k in reversed(range(number + 1))]
             self.discs.append(strikers + [self._disc(pitch * k, rail, 0.0) for k in range(self.row)])
         self.energy_at_first = self.kinetic_energy
 
     def _disc(self, x: float, rail: float, pace: float) -> Body:
         surface = {"friction": 0.0, "restitution": self.values["restitution"]}
-        mass, image = (self.values["striker"], "ember-disc") if pace else (1.0, "disc")
-        disc = self.add(Circle(self.radius), (x, rail + self.radius), image, mass=mass, **surface)
+        mass, colour = (self.values["striker"], EMBER) if pace else (1.0, MUTE)
+        disc = self.add(Circle(self.radius), (x, rail + self.radius), colour, mass=mass, **surface)
         disc.velocity = (pace, 0.0)
         return disc
-
-    @property
-    def state(self) -> str:
-        """State of the energy: "losing" with a restitution below 1, "touched" once a hand changed it."""
-        if self.touched.any():
-            return "touched"
-        return "untouched" if self.values["restitution"] == 1 else "losing"
 
     def figures(self) -> dict[str, float]:
         return {**self.values, "first": self.energy_at_first, "now": self.kinetic_energy}
 
     def labels(self) -> list[Label]:
         labels = []
-        for number, rail in enumerate(self.rails):
-            discs = self.on_rail(number)
+        for number, (rail, discs) in enumerate(zip(self.rails, self.discs, strict=True)):
             moving = sum(speed(disc) > _MOVES for disc in discs)
             momentum = sum(float(disc.velocity[0, 0]) * disc.mass for disc in discs)
             text = texts.IMPACTS_RAIL.format(sent=number + 1, moving=moving, momentum=abs(momentum))
             labels.append(Label(text, (8.6, rail + 1.5)))
         return labels
-
-    def on_rail(self, number: int) -> list[Body]:
-        """Return the discs between this rail and the one above it."""
-        low, high = self.rails[number], self.rails[number - 1] if number else math.inf
-        return [body for body in self.bodies if low <= height(body) < high]
 
 
 # Each is built for a gravity in m/s² and values of its quantities.

@@ -9,6 +9,7 @@ import numpy as np
 
 from engine import Body, Circle, Polygon
 from game.core import texts
+from game.drawing.tokens import EMBER, FAINT, INK, MUTE
 from game.scenes.physics.exhibit import Exhibit, Label, Quantity, height, speed
 
 _FOOT: Final = -0.014  # shares of a room's width above the ground, for the names of columns
@@ -31,43 +32,35 @@ class Slopes(Exhibit):
         """Place the slipperiest box lowest, so that none runs into another."""
         self.frictions = (0.2, 0.35, self.values["friction"], 0.65, 0.8)
         slope = math.radians(self.values["degrees"])
+        self.tangent = math.tan(slope)
         right, top = self.foot, self.length * math.sin(slope)
         left = right - self.length * math.cos(slope)
         middle = np.array([(left + right) / 2, top / 2])
         corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
-        self.add(Polygon(corners), middle, "slope", static=True)
+        self.add(Polygon(corners), middle, FAINT, static=True)
         down, away = np.array([math.cos(slope), -math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
         self.boxes: list[Body] = []
         for number, friction in enumerate(self.frictions):
             place = np.array([right, 0.0]) - (3.4 + 3.3 * number) * down + self.size[1] / 2 * away
-            image = "bright-box" if number == self.which else "box"
-            self.boxes.append(self.add(Polygon.box(*self.size), place, image, angle=-slope, friction=friction))
+            colour = INK if number == self.which else MUTE
+            self.boxes.append(self.add(Polygon.box(*self.size), place, colour, angle=-slope, friction=friction))
         self.places = [box.position[0].copy() for box in self.boxes]
         self.slid: set[int] = set()
 
     def observe(self) -> None:
-        """Record the boxes that have slid without the hand's help, by their numbers."""
+        """Record the boxes that have slid, by their numbers."""
         for number, (box, place) in enumerate(zip(self.boxes, self.places, strict=True)):
-            if not self.is_touched(box) and np.hypot(*(box.position[0] - place)) > _SLID:
+            if np.hypot(*(box.position[0] - place)) > _SLID:
                 self.slid.add(number)
 
     def figures(self) -> dict[str, float]:
-        degrees = self.values["degrees"]
-        return {"degrees": degrees, "tangent": math.tan(math.radians(degrees)), "slid": len(self.slid)}
+        return {"degrees": self.values["degrees"], "tangent": self.tangent, "slid": len(self.slid)}
 
     def labels(self) -> list[Label]:
-        tangent, labels = math.tan(math.radians(self.values["degrees"])), []
-        for box, friction in zip(self.boxes, self.frictions, strict=True):
-            words, within = texts.SLOPE_FRICTION.format(friction=friction), None
-            if self.on_slope(box):
-                within = tangent <= friction
-                words = texts.SLOPE_LABEL.format(tangent=tangent, sign="<" if within else ">", friction=friction)
-            labels.append(Label(words, (0.45, 1.0), box, within))
-        return labels
-
-    def on_slope(self, box: Body) -> bool:
-        """Whether a box that no hand has touched is still above the slope."""
-        return not self.is_touched(box) and bool(box.position[0, 0] + self.size[0] / 2 < self.foot)
+        return [
+            Label(texts.SLOPE_FRICTION.format(friction=friction), (0.45, 1.0), box, self.tangent <= friction)
+            for box, friction in zip(self.boxes, self.frictions, strict=True)
+        ]
 
 
 class Bounce(Exhibit):
@@ -76,7 +69,7 @@ class Bounce(Exhibit):
     name, width = "bounce", 22.0
     quantities = (Quantity("restitution", (0.1, 1.0), 0.75, 0.05), Quantity("drop", (1.0, 6.5), 6.0, 0.5))
     radius = 0.4
-    which = 3  # the ball that the live line is about, and whose restitution can be changed
+    which = 3  # the ball that its sentence is about, and whose restitution can be changed
 
     def build(self) -> None:
         drop = self.values["drop"]
@@ -85,37 +78,21 @@ class Bounce(Exhibit):
         self.balls: list[Body] = []
         for number, restitution in enumerate(self.restitutions.tolist()):
             x, y = float(self.columns[number]), float(self.expected[number])
-            image = "bright-disc" if number == self.which else "ember-disc"
-            place = (x, drop + self.radius)
-            self.balls.append(self.add(Circle(self.radius), place, image, restitution=restitution))
+            place, colour = (x, drop + self.radius), INK if number == self.which else EMBER
+            self.balls.append(self.add(Circle(self.radius), place, colour, restitution=restitution))
             if restitution:
                 self.rules.append(((x - 0.7, y), (x + 0.7, y)))
-        self.peaks = np.zeros(len(self.balls))
-        self.bounced, self.rising, self.measured = np.zeros((3, len(self.balls)), dtype=bool)
+        self.peaks = np.zeros(len(self.balls))  # metres reached since the first impact
+        self.bounced = np.zeros(len(self.balls), dtype=bool)
 
     def observe(self) -> None:
-        """Follow each ball down, up again, and to its first peak, as long as no hand interferes."""
-        index = [ball.index for ball in self.balls]
-        bottom = self.world.state.pose[0, index, 1] - self.radius
-        upward = self.world.state.velocity[0, index, 1] > 0
-        followed = ~self.touched[index] & ~self.measured
-        self.measured |= followed & self.rising & ~upward
-        self.bounced |= followed & (bottom <= _TOUCH)
-        self.rising = followed & self.bounced & upward
-        self.peaks = np.maximum(self.peaks, np.where(self.rising, bottom, 0.0))
-
-    @property
-    def state(self) -> str:
-        """Phase of the ball whose restitution can be changed."""
-        if self.measured[self.which]:
-            return "measured"
-        if self.is_touched(self.balls[self.which]):
-            return "touched"
-        return "rising" if self.rising[self.which] else "falling"
+        """Follow each ball down, and up again."""
+        bottom = self.world.state.pose[0, [ball.index for ball in self.balls], 1] - self.radius
+        self.bounced |= bottom <= _TOUCH
+        self.peaks = np.maximum(self.peaks, np.where(self.bounced, bottom, 0.0))
 
     def figures(self) -> dict[str, float]:
-        expected, peak = float(self.expected[self.which]), float(self.peaks[self.which])
-        return {**self.values, "expected": expected, "peak": peak}
+        return {**self.values, "expected": float(self.expected[self.which])}
 
     def labels(self) -> list[Label]:
         labels = []
@@ -123,7 +100,7 @@ class Bounce(Exhibit):
             x, expected = float(self.columns[number]), float(self.expected[number])
             labels.append(Label(texts.BOUNCE_COLUMN.format(restitution=restitution), (x, _FOOT * self.width)))
             if restitution:
-                words = texts.BOUNCE_PEAK if self.measured[number] else texts.BOUNCE_MARK
+                words = texts.BOUNCE_PEAK if self.bounced[number] else texts.BOUNCE_MARK
                 text = words.format(expected=expected, peak=self.peaks[number])
                 labels.append(Label(text, (x + 2.15, expected - 0.02)))
         return labels
@@ -135,7 +112,7 @@ class DragRace(Exhibit):
     name, width = "drag", 40.0
     quantities = (Quantity("linear_drag", (0.5, 2.0), 1.0, 0.1), Quantity("mass", (0.5, 2.0), 1.0, 0.1))
     top = 13.0
-    which = 1  # the disc that the live line is about, and whose mass can be changed
+    which = 1  # the disc that its sentence is about, and whose mass can be changed
 
     def build(self) -> None:
         drag = self.values["linear_drag"]
@@ -151,29 +128,20 @@ class DragRace(Exhibit):
             self.add(
                 Circle(_DISC * math.sqrt(mass)),
                 (self._lane(number), self.top),
-                {"none": "disc", "linear": "bright-disc", "quadratic": "ember-disc"}[name],
+                {"none": MUTE, "linear": INK, "quadratic": EMBER}[name],
                 mass=mass,
                 linear_drag=linear,
                 quadratic_drag=quadratic,
             )
             for number, (name, mass, linear, quadratic) in enumerate(self.lanes)
         ]
-        self.followed, self.speed, self.landed = self.discs[self.which], 0.0, False
+        self.speeds = [0.0] * len(self.discs)
 
     def observe(self) -> None:
-        """Follow the light disc with linear drag down to the floor, as long as no hand interferes."""
-        if self.landed or self.is_touched(self.followed):
-            return
-        self.landed = height(self.followed) - _DISC * math.sqrt(self.followed.mass) <= _TOUCH
-        if not self.landed:
-            self.speed = speed(self.followed)
-
-    @property
-    def state(self) -> str:
-        """Phase of the light disc with linear drag."""
-        if self.landed:
-            return "landed"
-        return "touched" if self.is_touched(self.followed) else "falling"
+        """Measure the speed of each disc until it lands."""
+        for number, disc in enumerate(self.discs):
+            if height(disc) - _DISC * math.sqrt(disc.mass) > _TOUCH and disc.velocity[0, 1] < 0:
+                self.speeds[number] = speed(disc)
 
     def terminal(self, number: int) -> float:
         """Return the terminal speed, at which drag balances the weight, in metres per second; infinite without drag."""
@@ -183,16 +151,15 @@ class DragRace(Exhibit):
         return math.sqrt(mass * self.gravity / quadratic) if quadratic else math.inf
 
     def figures(self) -> dict[str, float]:
-        return {"mass": self.values["mass"], "terminal": self.terminal(self.which), "speed": self.speed}
+        return {"mass": self.values["mass"], "terminal": self.terminal(self.which)}
 
     def labels(self) -> list[Label]:
         labels = []
-        for number, (disc, (name, mass, _, _)) in enumerate(zip(self.discs, self.lanes, strict=True)):
-            edge = _DISC * math.sqrt(mass)
-            labels.append(Label(texts.DRAG_SPEED.format(speed=speed(disc)), (0.0, 0.0), disc, reach=edge))
-            words = texts.DRAG_LANES[name].format(mass=mass, terminal=self.terminal(number))
+        for number, (name, mass, _, _) in enumerate(self.lanes):
+            words = texts.DRAG_LANES[name]
+            text = words.format(mass=mass, speed=self.speeds[number], terminal=self.terminal(number))
             below = _FOOT * self.width * (1 + 1.4 * (number % 2))  # in two rows: they are long
-            labels.append(Label(words, (self._lane(number), below)))
+            labels.append(Label(text, (self._lane(number), below)))
         return labels
 
     def _lane(self, number: int) -> float:

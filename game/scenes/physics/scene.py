@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -18,7 +17,7 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL
 from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.physics.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
+from game.scenes.physics.bodies import Outlines, draw_contacts, draw_grip
 from game.scenes.physics.exhibit import BELOW, CLEAR, Grip
 from game.scenes.physics.exhibits import EXHIBITS
 from game.ui.actions import Action, Table
@@ -34,8 +33,6 @@ GRAVITIES: Final = (1.62, 9.81)
 _MORE: Final = "physics"  # name in the settings of what stays open
 _LEAST: Final = 300.0  # points of a column
 _REACH: Final = 8.0  # points by which the mouse may miss a body
-_REST: Final = 6  # steps without a change after which an exhibit of many bodies is made anew
-_MANY: Final = 24
 
 
 class PhysicsScene(PanelScene):
@@ -53,7 +50,6 @@ class PhysicsScene(PanelScene):
         self._clock = TimeScale()
         self.playback = Playback(self._clock, (1.0,), self._step)
         self.values: dict[str, dict[str, float]] = {}
-        self._waits: int | None = None  # steps until the exhibit is made anew
         self.contacts_drawn = False
         self.grip: Grip | None = None
         self.explained = Explained()
@@ -67,8 +63,8 @@ class PhysicsScene(PanelScene):
 
     def restart(self) -> None:
         self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity], self.values.get(self.chosen))
-        self._waits = self.grip = None
-        self._outlines = Outlines(self.exhibit.sprites)
+        self.grip = None
+        self._outlines = Outlines(self.exhibit.drawn)
         self._poses = self._poses_before = self.exhibit.poses
         self._clock.begin()
 
@@ -77,11 +73,8 @@ class PhysicsScene(PanelScene):
         self.build()
 
     def _choose(self, index: int) -> None:
-        self.chosen = list(EXHIBITS)[index % len(EXHIBITS)]
+        self.chosen = list(EXHIBITS)[index]
         self._show()
-
-    def _turn(self, direction: int) -> None:
-        self._choose(list(EXHIBITS).index(self.chosen) + direction)
 
     def _choose_gravity(self, index: int) -> None:
         self._gravity = index
@@ -89,23 +82,14 @@ class PhysicsScene(PanelScene):
 
     def _change(self, name: str, value: float) -> None:
         self.values.setdefault(self.chosen, {})[name] = value
-        self._waits = _REST if len(self.exhibit.bodies) > _MANY else 0
+        self.restart()
 
-    def _reset(self) -> None:
-        self.values.pop(self.chosen, None)
-        self._show()
-
-    def toggle_contacts(self) -> None:
-        self.contacts_drawn = not self.contacts_drawn
-        self.build()
+    def show_contacts(self, drawn: bool) -> None:
+        self.contacts_drawn = drawn
 
     def update(self) -> Transition | None:
         for _ in range(self.playback.steps()):
             self._step()
-        if self._waits is not None:
-            self._waits -= 1
-            if self._waits < 0:
-                self.restart()
         self.explained.update()
         return super().update()
 
@@ -127,12 +111,9 @@ class PhysicsScene(PanelScene):
         return [
             stop,
             step,
-            Action(Command.NEXT, lambda: self._turn(1)),
             Action(Command.RETRY, self.restart, texts.HINT_RESTART_EXHIBIT),
-            replace(self.explained.action(), gamepad=None),  # its button draws the contacts
+            self.explained.action(),
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
-            Action(Command.CHOICES, self.toggle_contacts),
-            Action(Command.PREVIOUS, lambda: self._turn(-1)),
         ]
 
     def _pause(self) -> Transition:
@@ -161,18 +142,15 @@ class PhysicsScene(PanelScene):
             column.slider(label, value, quantity.limits, change, step=quantity.step, figure=shown)
             column.explain(what["slider"])
         words: list[tuple[str, OnPress]] = [
-            (texts.PHYSICS_START_VALUES, self._reset),
             (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             (texts.MORE[self.more], self._open_more),
         ]
-        buttons = column.words(words)
-        self._inside = buttons[1]
-        column.gap()
-        if not self.more:
-            return
-        column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
-        column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
-        column.explain(what["contacts"])
+        self._inside, _ = column.words(words)
+        if self.more:
+            column.gap()
+            column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
+            column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, self.show_contacts)
+            column.explain(what["contacts"])
 
     @property
     def more(self) -> bool:
@@ -184,17 +162,13 @@ class PhysicsScene(PanelScene):
         self.build()
 
     def _said(self) -> str:
-        return texts.EXHIBITS[self.chosen][2][self.exhibit.state].format(**self.exhibit.figures())
+        said = texts.EXHIBITS[self.chosen][2].format(**self.exhibit.figures())
+        return f"{said} {texts.EXHIBIT_TOUCHED}" if self.exhibit.touched else said
 
     # The room
 
     def _height(self, width: float) -> float:
         return (CLEAR + BELOW) * width
-
-    @property
-    def _weight(self) -> float:
-        """Weight of a kilogram, in newtons."""
-        return self.exhibit.gravity
 
     def view(self, scale: float) -> View:
         """Return how the exhibit's metres lie on the canvas."""
@@ -234,7 +208,7 @@ class PhysicsScene(PanelScene):
                 canvas.line(tuple(start), tuple(end), FAINT)
             self._outlines.draw(canvas, view, poses, self._lit(), held=self.grip is not None)
             if self.contacts_drawn:
-                draw_contacts(canvas, view, self.exhibit.world, self._weight)
+                draw_contacts(canvas, view, self.exhibit.world, self.exhibit.gravity)
             for label in self.exhibit.labels():
                 label.draw(canvas, view, poses)
         if self.grip:
@@ -242,17 +216,12 @@ class PhysicsScene(PanelScene):
             draw_grip(canvas, (x, y), self._mouse)
 
     def _write_legend(self, cursor: Cursor) -> None:
-        """Write whether time is stopped, or else how to take hold of a body, and what the lines of contacts are."""
+        """Write whether time is stopped, or else how to take hold of a body."""
         controls = self.context.controls
         keys = self.form.focused is self.room_row and not controls.mouse_in_use
         held = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
         words, colour = (texts.PHYSICS_STOPPED, INK) if self.playback.stopped else (held, HUMAN)
         cursor.styled(words, SMALL, colour)
-        if self.contacts_drawn:
-            line = cursor.in_style(SMALL)
-            if cursor.canvas:
-                draw_force_scale(cursor.canvas, (cursor.left, line.baseline), self._weight, cursor.width)
-            cursor.gap(20)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         super().draw_behind(canvas, alpha)

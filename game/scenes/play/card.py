@@ -84,7 +84,7 @@ class ShownCard:
         rows.gap(6)
         rows.text(card.reason)
         advice = card.advice if self.advise else ""
-        for words, colour in ((card.quality, HUMAN), (advice, MUTE), (card.bare, NET), (card.assists, HUMAN)):
+        for words, colour in ((card.quality, HUMAN), (advice, MUTE), (card.assists, HUMAN)):
             if words:
                 rows.gap(3)
                 rows.styled(words, SMALL, colour)

@@ -20,13 +20,12 @@ from game.core.clock import TimeScale
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.explain.landings import Landings
 from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
 from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
 from game.flight.flight import Flight, StickHolder, begin
 from game.flight.flight_file import Entry, Record
-from game.flight.foresight import LastChance, SixFutures
+from game.flight.foresight import SixFutures
 from game.flight.logbook import Records
 from game.flight.networks import Network
 from game.flight.outcomes import OutcomeCard, cause_of, outcome_card
@@ -55,7 +54,6 @@ _BELOW_HEAD: Final = 44.0  # and between the words and the craft
 _LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _CATCHES_UP: Final = 6  # steps of the network's own flight in a frame, once the player's is over
 _LONGEST: Final = 3600  # steps after which its flight counts as one that does not land
-_SEARCH: Final = 6  # decisions in a frame, in the search for what would have saved a lost flight
 _THINKS: Final = 2  # decisions of six futures that are flown in a frame
 
 
@@ -111,7 +109,7 @@ class FlownFlight:
         self.challenge, self.network, self.helped = challenge, network, helped
         self.waiting = self._held_before = True
         self.begun = False
-        self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
+        self.age = 0
         self.record: Record | None = None
         self.goal = ""
         rules = challenge.rules
@@ -126,7 +124,6 @@ class FlownFlight:
         self.help_words, self.interventions = HelpWords(self.helped), Interventions()
         self.copilot_panel = CopilotPanel()
         self._help()
-        self._last_chance: LastChance | None = None
         self.futures: SixFutures | None = None
         calm = self._settings.reduced_motion
         self.clear, self._earth = ClearArea(), EARTH
@@ -200,8 +197,6 @@ class FlownFlight:
         self.path_preview.follow(waiting=False)
         if not was_over:
             self._follow_flight()
-        if flight.wrecked and self._last_chance:
-            self._last_chance.look(_SEARCH)
         if sound := self.challenge.stepped(self):
             self.context.sound.play(sound)
         ended = flight.over and not was_over
@@ -248,22 +243,15 @@ class FlownFlight:
         self.path.follow()
         self.copilot_panel.follow(flight, self.futures if asks else None)
         self.credit.follow()
-        if self.credit.helped and self._policy:  # to tell what would have saved it if it is lost
-            self._last_chance = self._last_chance or LastChance(self._policy, flight.route)
-            self._last_chance.note(flight.env)
         if flight.over:
             self._readouts = at_touch(self._readouts, flight.env)
 
     def think(self, decisions: int) -> None:
         """Fly the six futures of the present moment some decisions further, for whoever asks."""
-        step = self.flight.at
         if self._policy is None or self.flight.over:
             return
         self.futures = self.futures or SixFutures(self._policy, self.flight.route)
-        if not self.futures.under_way and self._looked != step:
-            self.futures.begin(self.flight.env)
-            self._looked = step
-        self.futures.follow(decisions)
+        self.futures.follow(self.flight.env, decisions)
         self.copilot_panel.follow(self.flight, self.futures)
 
     # The end
@@ -289,26 +277,20 @@ class FlownFlight:
         if card.advice and cause_of(flight.env) is Cause.TILTED:
             card.advice = f"{card.advice} {texts.ADVICE_FINE.format(key=self.context.controls.word(Held.FINE))}"
         if credit.helped:
+            if not card.good and (why := why_not_saved(flight)):  # says more than what to do about it
+                card.advice = why
             card.stepped_in, card.watched = len(self.interventions.moments), self.interventions.watched(flight)
         if add := self.challenge.words(self).card:
             add(card)
         return card
 
     def _finish_card(self) -> None:
-        """Add what takes longer than a frame to be known: how the network fares from there, and what would have saved.
-
-        Until it is known, the card leaves it open.
-        """
+        """Add how the network fares from the same start; until that is known, the card leaves it open."""
         card = self.ending.card
         if self._shadow and card:
             score = landing_score(self._shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
             card.compared[texts.CARD_NETWORK.format(who=self.credit.who)] = words if self._shadow_ended else "…"
-        if card and self.credit.helped and not card.good and not card.bare:
-            chance = self._last_chance
-            if chance is None or chance.known:
-                card.bare = why_not_saved(self.flight, chance)
-                card.advice = "" if card.bare else card.advice  # why it was not saved says more
 
     def _follow_shadow(self, shadow: Flight[Alone]) -> None:
         """Fly the network's own flight from the same start, unseen; after the player's, some steps in a frame."""
@@ -390,7 +372,7 @@ class FlownFlight:
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
         else:
-            self.path_preview.draw(world, view, self.scenery.clear.head, self._coasting)
+            self.path_preview.draw(world, view, self.scenery.clear.head)
         if self.ghost:
             self.ghost.draw(world, view, alpha)
         self.scenery.draw_craft(world, alpha, words=self.ending.shown == 0)
@@ -404,13 +386,6 @@ class FlownFlight:
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, flight.share if self.begun else None, self.network.name)
-
-    @property
-    def _coasting(self) -> tuple[float, bool] | None:
-        """A guardian's future of coasting, for the mark on the path; None without one, or if nobody asks."""
-        values = self.copilot_panel.values
-        shown = self._settings.show_thinking and self.copilot_panel.shown
-        return values.coasting if shown and isinstance(values, Landings) else None
 
     def _shown(self, *, whole: bool) -> list[str]:
         """Name the read-outs: the four that a pilot needs, and what is left of time and of a small tank; or all."""

@@ -25,7 +25,6 @@ from game.input.controls import Controls
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
-    from game.flight.foresight import LastChance
 
 Why = tuple[str, str, str]  # a title, and two lines
 _FLOWN_BY, _WARNED, _CHANGED, _AT_ONCE = range(4)  # how urgent sentences are
@@ -159,19 +158,14 @@ def is_late(decision: SharedDecision) -> bool:
     return bool(decision.overridden[0]) and Landings.of(decision).asked[1] is Landing.UNKNOWN
 
 
-def why_not_saved(flight: Flight[Crew], last_chance: LastChance | None) -> str:
-    """Say of a helped flight that was lost why it was not saved, and what would have."""
+def why_not_saved(flight: Flight[Crew]) -> str:
+    """Say of a helped flight that was lost why it was not saved; empty if that is not known."""
     guard = flight.chooser.guard
-    words = ""
     if guard and guard.bare:
         since, why = guard.bare
-        words = texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
-    elif flight.chooser.copilot and (guard is None or guard.ahead.problem):
-        words = texts.NOT_SAVED_BY_VALUES
-    if last_chance is None or not words:
-        return words
-    template = texts.LAST_CHANCE if last_chance.seconds is not None else texts.LAST_CHANCE_NONE
-    return f"{words} {template.format(seconds=f'{last_chance.seconds or 0.0:.1f}')}"
+        return texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
+    by_values = flight.chooser.copilot and (guard is None or guard.ahead.problem)
+    return texts.NOT_SAVED_BY_VALUES if by_values else ""
 
 
 def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:

@@ -221,7 +221,7 @@ class LanderView(View):
         self.swarms.update(self.context.settings.reduced_motion)
         self.laboratory.update()
         lesson = self.lessons.answer()
-        return push("lesson", lesson, self.lessons, self.run.swarm_state) if lesson else None
+        return push("lesson", lesson, self.lessons) if lesson else None
 
     def back(self) -> bool:
         if self.laboratory.page:

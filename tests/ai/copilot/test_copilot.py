@@ -5,7 +5,6 @@ import pytest
 
 from ai.copilot.copilot import GUARDIAN_MARGIN, CoPilot, Mode
 from ai.copilot.guardian import ActionSource
-from ai.lander.environment import LanderEnv
 from ai.lander.pilots import COAST
 
 
@@ -96,17 +95,6 @@ def test_a_pilot_who_heads_for_one_pad_is_understood():
     assert decision.action[0] == 1
     copilot.forget()
     assert copilot.decide(seen(1, 2), [2]).action[0] == 2
-
-
-def test_asked_again_before_the_flight_has_moved_on_it_takes_the_answer_for_no_new_evidence():
-    env, copilot = LanderEnv(1, 0), CoPilot(valuer(LEFT, RIGHT), 0.9)
-    env.reset()
-    first = copilot.decide(seen(1, 2), [1], env=env)
-    copilot.decide(seen(1, 2), [2], env=env)
-    again = copilot.decide(seen(1, 2), [1], env=env)
-    assert again.likely.tolist() == first.likely.tolist()
-    env.fly([3])
-    assert copilot.decide(seen(1, 2), [1], env=env).likely[0, 0] > first.likely[0, 0] > 0.5
 
 
 def test_only_the_slots_asked_for_are_forgotten():

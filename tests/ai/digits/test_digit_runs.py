@@ -10,7 +10,7 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining
-from ai.files import state_folder
+from ai.files import STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training.run import resume, save
 
@@ -77,9 +77,9 @@ def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
     training = DigitTraining(SMALL, data=data)
     training.advance()
     save(training, tmp_path / "run")
-    (state,) = state_folder(tmp_path / "run").iterdir()
+    state = tmp_path / "run" / STATE_FILE
     state.write_bytes(b"nothing")
-    with pytest.raises(ModelFormatError, match="without this folder"):
+    with pytest.raises(ModelFormatError, match="without this file"):
         resume(DigitTraining, tmp_path / "run", data=data)
     state.unlink()
     with pytest.raises(ModelFormatError, match="nothing to go on with"):

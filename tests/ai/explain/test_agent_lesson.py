@@ -2,7 +2,6 @@
 
 import inspect
 import pickle
-from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -82,13 +81,9 @@ def test_the_step_is_the_one_that_is_taken_when_nobody_looks(case):
     step = lesson.step
     np.testing.assert_array_equal(step.values_after, alone.online.values)
     np.testing.assert_array_equal(step.gradient, alone.online.gradients)
-    np.testing.assert_array_equal(step.taken, alone.optimizer.scratch)
-    for name, kept in step.optimizer_after.items():
-        np.testing.assert_array_equal(kept, alone.optimizer.memory[name])
     assert step.learning_rate == alone.optimizer.learning_rate
-    np.testing.assert_allclose(lesson.predicted_after, alone.online.predict(lesson.state), rtol=1e-4, atol=1e-5)
     np.testing.assert_array_equal(step.values_before, agent.online.values)
-    np.testing.assert_array_equal(step.values_before - step.taken, step.values_after)
+    np.testing.assert_allclose(lesson.predicted, agent.online.predict(lesson.state), rtol=2e-5, atol=2e-6)
 
 
 def test_the_target_is_the_agents(case):
@@ -101,40 +96,11 @@ def test_the_target_is_the_agents(case):
     targets, values = agent.targets(cells)
     assert lesson.target == targets[row]
     assert lesson.next_value == values[row]
-    assert lesson.weight == before.weights[row]
     assert lesson.error == lesson.predicted[int(cell.action)] - np.float32(lesson.target)
-    judge = agent.target if agent.config.target_judges else agent.online
-    np.testing.assert_allclose(lesson.next_judged, judge.predict(cells.next_state)[row], rtol=1e-6)
-    best = lesson.next_online if agent.double else lesson.next_judged
-    assert lesson.best == int(np.argmax(best))
-    assert (lesson.next_online is None) == (not agent.double)
+    picks = agent.online if agent.double or not agent.config.target_judges else agent.target
+    assert lesson.best == int(np.argmax(picks.predict(cells.next_state)[row]))
     sum_up = float(cell.reward) + lesson.discount * lesson.next_value * (not cell.terminal)
     assert lesson.target == pytest.approx(sum_up, rel=1e-6)
-
-
-def test_the_network_is_shown_as_it_ran(case):
-    agent, before, _, lesson, _ = case
-    network = agent.online
-    step = lesson.step
-    given = network.activations(lesson.state)
-    assert len(step.activations) == len(network.layers)
-    for shown, own in zip(step.activations, given, strict=True):
-        np.testing.assert_allclose(shown, own, rtol=2e-5, atol=2e-6)
-    np.testing.assert_array_equal(step.activations[-1], lesson.predicted)
-    judged = np.clip(lesson.error, -1.0, 1.0) if agent.config.cost == "huber" else 2 * lesson.error
-    assert lesson.derivative * len(before.weights) / lesson.weight == pytest.approx(judged, rel=1e-4)
-
-
-def test_the_shares_of_all_memories_add_up_to_the_gradient(case):
-    _, before, cell, lesson, _ = case
-    config, size = before.agent.config, len(before.weights)
-    # A minibatch in which the same memory is drawn every time: each brings the same share.
-    cells = Transition(*(np.repeat(np.asarray(part)[None], size, axis=0) for part in cell))
-    plain = copy(before.agent)
-    plain.config = config.changed(mirror=False)
-    lesson = explain(Before(plain, cells, np.ones(size, np.float32)), cell)
-    unclipped = lesson.step.gradient * max(1.0, lesson.step.gradient_length / config.gradient_clip)
-    np.testing.assert_allclose(size * lesson.step.share, unclipped, rtol=2e-3, atol=1e-6)
 
 
 def test_the_agent_is_as_before_and_a_lesson_can_be_sent(case, monkeypatch):
@@ -152,14 +118,14 @@ def test_the_agent_is_as_before_and_a_lesson_can_be_sent(case, monkeypatch):
 
 def test_the_lines_are_those_of_the_running_code(case):
     lesson = case[3]
-    for function in (DeepQAgent._learn_from, DeepQAgent.gradient_step, Optimizer.step):
+    functions = (DeepQAgent.targets, DeepQAgent.gradient_step, Optimizer.step)
+    ran = [line.function for line in lesson.step.lines]
+    for function in functions:
         lines, first = inspect.getsourcelines(function)
         numbers = [line.number for line in lesson.step.lines if line.function == function.__qualname__]
-        assert numbers
         assert first <= min(numbers) <= max(numbers) < first + len(lines)
-    ran = [line.function for line in lesson.step.lines]
-    order = ["DeepQAgent._learn_from", "DeepQAgent.targets", "DeepQAgent.gradient_step", "Optimizer.step"]
-    assert [ran.index(name) for name in order] == sorted(ran.index(name) for name in order)
+    order = [ran.index(function.__qualname__) for function in functions]
+    assert order == sorted(order)
     said = {name: value for line in lesson.step.lines for name, value in line.values.items()
             if line.function == "DeepQAgent.gradient_step"}  # fmt: skip
     assert said["errors"].shape == (16,)

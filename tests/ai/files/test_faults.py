@@ -27,15 +27,12 @@ from ai.files import (
     claimed_folder,
     count_of,
     inside,
-    move_state,
     parse_json,
     read_array,
     read_arrays,
     read_bytes,
     read_json,
     recover_all,
-    recover_folder,
-    state_folder,
     take,
     take_folder,
     write_text,
@@ -43,7 +40,6 @@ from ai.files import (
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
-    ConvolutionLayer,
     CostFunctions,
     ModelFormatError,
     NeuralNetwork,
@@ -129,7 +125,7 @@ def test_what_is_no_ordinary_file_of_the_folder_is_named(saved, run, subtests):
         with subtests.test(name=name, damage=damage):
             with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
                 resume(Training, run)
-            assert any(path.name in problem or "last" in problem for problem in caught.value.problems)
+            assert path.name in caught.value.problem or "last" in caught.value.problem
         path.rmdir() if damage == "folder" else path.unlink()
         shutil.copy(saved / path.relative_to(run), path)
 
@@ -146,15 +142,9 @@ def packed(path, method=zipfile.ZIP_DEFLATED, **arrays):
 def test_an_archive_is_read_whole_or_refused_in_a_sentence(tmp_path, subtests):
     path = tmp_path / "a.npz"
     whole = packed(path, zipfile.ZIP_STORED, steps=3)
-    assert read_arrays(path, 1000, lambda *_: None)["steps"] == 3
-    encrypted, flipped = bytearray(whole), bytearray(whole)
-    encrypted[whole.rfind(b"PK\1\2") + 8] |= 1
-    flipped[-whole[::-1].find(b"PMUN") - 20] ^= 1
+    assert read_arrays(path, 1000)["steps"] == 3
     for held, most, said in (
-        (encrypted, 1000, "no arrays that can be read"),
-        (whole[:-1], 1000, "no arrays that can be read"),
         (whole[: len(whole) // 2], 1000, "no arrays that can be read"),
-        (b"", 1000, "no arrays that can be read"),
         (b"whatever", 1000, "no arrays that can be read"),
         (packed(path, objects=[None]), 10_000, "no arrays that can be read"),
         (packed(path, zeros=np.zeros(1_000_000)), 100_000, "larger than"),  # a small file, unpacked
@@ -162,10 +152,10 @@ def test_an_archive_is_read_whole_or_refused_in_a_sentence(tmp_path, subtests):
     ):
         path.write_bytes(held)
         with subtests.test(said=said), pytest.raises((ValueError, OSError), match=said):
-            read_arrays(path, most, lambda *_: None)
+            read_arrays(path, most)
     np.save(tmp_path / "one.npy", np.zeros(2))
     with pytest.raises(ValueError, match="no archive"):
-        read_arrays(tmp_path / "one.npy", 1000, lambda *_: None)
+        read_arrays(tmp_path / "one.npy", 1000)
 
 
 def test_an_array_is_of_the_shape_and_kind_that_is_asked_for(tmp_path, subtests):
@@ -214,11 +204,9 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
     NeuralNetwork(*CostFunctions.use_mse()).save(tmp_path / "model")
     for layers, said in (
         ([{"type": "ActivationLayer", "activation": {"name": "tanh"}}] * 60_000, "at most 500 layers"),
-        ([fully(3400, 3400)] * 2, "at most 12,000,000 parameters"),
-        ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
-        ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
-        ([convolution([34, 34, 256], 256), convolution([32, 32, 256], 256)], "multiplications"),
-        ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
+        ([fully(4000, 4000)], "12,000,000 parameters"),
+        ([fully(1_000_000, 64)], "whole number from 1 to 262144"),
+        ([convolution([28, 28, 1], 1 << 18)], "height · width · channels"),
     ):
         edit(tmp_path / "model" / "config.json", layers=layers)
         with subtests.test(said=said):
@@ -230,7 +218,7 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
 def test_what_a_run_says_of_itself_is_checked_before_there_is_room_for_it(run, subtests):
     config = json.loads((run / "config.json").read_text())["config"]
     best = json.loads((run / "training.json").read_text())["best"]
-    asked = [{"hidden": [1024] * 400}, {"hidden": [1] * 60_000}, {"env": None}, {"env": "x" * 100_000 + ":y"},
+    asked = [{"hidden": [1024] * 400}, {"hidden": [1] * 6_000}, {"env": None}, {"env": "x" * 100_000 + ":y"},
              {"preset" * 20_000: 1}]  # fmt: skip
     counts = [{"features": 1_000_000}, {"actions": True}, {"decisions": 10**400}]
     for name, changes, said in (
@@ -280,11 +268,6 @@ def test_a_file_is_as_large_as_it_may_be_and_no_larger(tmp_path):
     assert read_bytes(tmp_path / "a", 5) == b"12345"
     with pytest.raises(OSError, match="larger than"):
         read_bytes(tmp_path / "a", 4)
-    with pytest.raises(OSError, match="such a name"):
-        read_bytes("a\0b")
-    if Path("/proc/self/maps").exists():  # says that it is empty
-        with pytest.raises(OSError, match="larger than"):
-            read_bytes("/proc/self/maps", 10)
     with pytest.raises(OSError, match="not an ordinary file"):
         read_json("/dev/zero")
     with pytest.raises(OSError, match="leads out"):
@@ -299,8 +282,6 @@ def test_a_network_too_large_to_be_read_is_not_made_either():
         network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
     with little_memory(), pytest.raises(ValueError, match="parameters"):
         DeepQAgent(config=PRESETS["modern"].changed(hidden=(1024,) * 400))
-    with pytest.raises(ValueError, match="values of an example"):
-        NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((28, 28, 1), 1 << 12, 1))
 
 
 # No code from files
@@ -370,9 +351,7 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
         ("thesis", None, _thesis),
         ("digits", classic, lambda folder: None),
         ("notes", saved, lambda folder: _of_another(folder / "notes.txt")),
-        ("notes within", saved, lambda folder: _of_another(folder / "online" / "notes.txt")),
         ("a link within", saved, _within_linked),
-        ("repository", saved, lambda folder: _of_another(folder / ".git" / "HEAD")),
         ("linked", saved, _linked),
     ):
         place = tmp_path / name
@@ -417,33 +396,6 @@ def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")
-def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
-    os.mkfifo(tmp_path / ".run.lock")
-    waiter = "from ai.files import take_folder; import sys; take_folder(sys.argv[1]).close()"
-    subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=300)
-
-
-def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(tmp_path, monkeypatch):
-    rename, calls = Path.rename, []
-
-    def meddled(path, target):
-        moved = rename(path, target)
-        calls.append(path.name)
-        if len(calls) == 1:
-            recover_folder(tmp_path / "net")
-        return moved
-
-    network = NeuralNetwork(*CostFunctions.use_mse())
-    network.save(tmp_path / "net")
-    network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
-    monkeypatch.setattr(Path, "rename", meddled)
-    network.save(tmp_path / "net")
-    assert calls[0] == calls[2] == "net"
-    assert len(NeuralNetwork.load(tmp_path / "net").layers) == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["net"]
-
-
 def test_what_a_save_left_half_made_goes_after_an_hour_and_an_old_one_comes_back(tmp_path):
     young, stale = tmp_path / ".run.01234567.new", tmp_path / ".run.89abcdef.new"
     for number, folder in enumerate((young, stale, tmp_path / ".gone.01234567.old", tmp_path / ".gone.89abcdef.old")):
@@ -472,16 +424,10 @@ def test_a_save_that_fails_or_meets_what_is_not_ours_leaves_all_as_it_was(tmp_pa
     assert listing(tmp_path) == before | {tmp_path / "run" / "diary": b"dear"}
 
 
-def test_a_line_stands_alone_after_one_that_was_cut_short_and_a_state_follows_its_run(tmp_path):
+def test_a_line_stands_alone_after_one_that_was_cut_short(tmp_path):
     (tmp_path / "log").write_bytes(b'{"a": ')
     append_line(tmp_path / "log", {"a": 1})
     assert parse_json((tmp_path / "log").read_text().splitlines()[-1]) == {"a": 1}
-    for name in "ab":
-        state_folder(tmp_path / name).mkdir()
-        (state_folder(tmp_path / name) / name).touch()
-    move_state(tmp_path / "a", tmp_path / "b")
-    assert [path.name for path in state_folder(tmp_path / "b").iterdir()] == ["a"]
-    assert not state_folder(tmp_path / "a").exists()
 
 
 def test_two_writers_of_one_folder_never_mix_and_what_systems_leave_is_no_obstacle(tmp_path):

@@ -1,11 +1,11 @@
-"""Values that a file has given: right ones are made a dataclass, wrong ones are named, all of them."""
+"""Values that a file has given: right ones are made a dataclass, the first wrong one is named."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 import pytest
 
-from ai.files import Above, OneOf, SchemaError, Share, Sized, Within, check_header, read_as, sound_fields
+from ai.files import Above, OneOf, Share, Sized, Within, check_header, read_as, sound_fields
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,14 @@ def test_what_is_wrong_is_named_with_its_place(subtests):
         ({"name": ""}, "name: '' has not a length of 1 to 8"),
         ({"name": "x" * 9}, "not a length of 1 to 8"),
         ({"wheels": {}}, "wheels: {} is no list"),
-        ({"wheels": [1]}, r"wheels\[0\]: 1 is no table"),
-        ({"wheels": [{"radius": 0}]}, r"wheels\[0\].radius: 0.0 is not above 0"),
-        ({"wheels": [{"radius": 1}, {}]}, r"wheels\[1\].radius is missing"),
-        ({"wheels": [{"radius": 1, "spokes": 2}]}, r"wheels\[0\].spokes: 2 does not lie between 3 and 60"),
+        ({"wheels": [1]}, "wheels: 0: 1 is no table"),
+        ({"wheels": [{"radius": 0}]}, "wheels: 0: radius: 0.0 is not above 0"),
+        ({"wheels": [{"radius": 1}, {}]}, "wheels: 1: radius is missing"),
+        ({"wheels": [{"radius": 1, "spokes": 2}]}, "wheels: 0: spokes: 2 does not lie between 3 and 60"),
         ({"wheels": [{"radius": 1, "spokes": 32.0}]}, "no whole number"),
         ({"wheels": [{"radius": 1, "spokes": True}]}, "no whole number"),
         ({"place": [1, 2, 3]}, "no list of 2"),
-        ({"place": [1, "x"]}, r"place\[1\]: 'x'"),
+        ({"place": [1, "x"]}, "place: 1: 'x'"),
         ({"colour": "green"}, "not one of red, blue"),
         ({"colour": []}, "colour: .* is no text"),
         ({"worn": 1.5}, "does not lie between 0 and 1"),
@@ -60,23 +60,18 @@ def test_what_is_wrong_is_named_with_its_place(subtests):
         ({"worn": False}, "no finite number"),
         ({"locked": 1}, "neither true nor false"),
         ({"load": 0.5}, "load: 0.5"),
-        ({"parts": {"axle": "x"}}, "parts.axle: 'x'"),
+        ({"parts": {"axle": "x"}}, "parts: axle: 'x'"),
         ({"parts": []}, "no table"),
     ]:
-        with subtests.test(wrong=wrong, said=said), pytest.raises(SchemaError, match=said):
+        with subtests.test(wrong=wrong, said=said), pytest.raises(ValueError, match=said):
             read_as(Cart, WHOLE | wrong)
 
 
-def test_one_message_names_everything_that_is_wrong_and_is_short_all_the_same():
-    with pytest.raises(SchemaError) as caught:
-        read_as(Cart, {"wheels": [{"radius": -1, "spokes": 0}, 5], "locked": "y" * 1000})
-    named = [problem.partition(":")[0] for problem in caught.value.problems]
-    assert named == ["name is missing", "wheels[0].radius", "wheels[0].spokes", "wheels[1]", "locked"]
-    assert len(str(caught.value)) < 300
-    with pytest.raises(SchemaError, match="; and more") as caught:
-        read_as(Cart, WHOLE | {"wheels": ["x"] * 500})
-    assert len(str(caught.value)) < 2000
-    assert len(caught.value.problems) < 30  # of 500
+def test_a_message_is_short_whatever_a_file_says():
+    for wrong in ({"locked": "y" * 1000}, {"parts": {"y" * 1000: "x"}}, {"wheels": ["x"] * 500}):
+        with pytest.raises(ValueError, match=next(iter(wrong))) as caught:
+            read_as(Cart, WHOLE | wrong)
+        assert len(str(caught.value)) < 200
 
 
 def test_fields_that_are_unknown_are_passed_over():

@@ -106,14 +106,6 @@ def test_sizes_that_make_no_sense_are_named(subtests):
             make()
 
 
-def test_images_of_another_shape_are_named():
-    for layer in ConvolutionLayer((8, 8, 1), 2, 3), MaxPoolingLayer((8, 8, 1)), FlattenLayer((8, 8, 1)):
-        for shape in (5, 64), (5, 8, 8, 2), (64,), (8, 8, 1):
-            for propagate in (layer.forward_propagate, layer.predict):
-                with pytest.raises(ValueError, match=r"a batch of images of shape \(8, 8, 1\)"):
-                    propagate(np.zeros(shape))
-
-
 def digits_network(seed=0, dropout=0.2):
     """Return a small classifier of 8 x 8 pixels into three kinds."""
     return (

@@ -66,7 +66,6 @@ def test_wrong_arguments_are_named():
         ({"x": XOR_X[:0], "y": XOR_Y[:0]}, "at least one"),
         ({"y": XOR_Y[:, 0]}, "shape"),
         ({"sampling": "shuffled"}, "shuffled"),
-        ({"batch_size": 0}, "batch_size"),
         ({"x": np.zeros((4, 3))}, "3"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -188,20 +187,6 @@ def test_the_flat_vector_is_the_layers_and_a_later_layer_joins_it():
     np.testing.assert_array_equal(network.values[: before.size], before)
     assert network.values.size == before.size + 4
     assert np.shares_memory(network.layers[-1].weights, network.values)
-
-
-@pytest.mark.parametrize("grown", [False, True])
-def test_weights_asked_for_before_the_first_training_stay_those_of_the_network(grown):
-    network = small_network()
-    before, number = network.layers[2].parameters[0], network.values.size
-    if grown:
-        network.add_layer(FullyConnectedLayer(1, 1))
-    weights = network.layers[0].weights
-    network.train(np.repeat(XOR_X, 2, axis=0), np.repeat(XOR_Y, 2, axis=0))
-    np.testing.assert_array_equal(weights.ravel(), network.values[:32])
-    np.testing.assert_array_equal(before.value.ravel(), network.values[number - 17 : number - 1])
-    weights[...] = 0
-    assert not network.values[:32].any()
 
 
 def test_a_copy_is_independent():

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
 from ai.digits import DigitClassifier
 from ai.nn import (
     ActivationFunctions,
@@ -114,7 +113,7 @@ def test_a_network_for_images_comes_back_and_damage_to_it_is_named(tmp_path, sub
     change: Any
     for index, change, message in [
         (0, {"inputs": [8, 7]}, "height, width, channels"),
-        (0, {"inputs": [1 << 20, 1 << 20, 1]}, "height · width · channels"),
+        (0, {"inputs": [1 << 18, 1 << 18, 1]}, "height · width · channels"),
         (0, {"kernel": 1 << 10}, "does not fit"),
         (0, {"stride": 1, "padding": 0}, "a ConvolutionLayer has no padding, stride"),
         (0, {"filters": 4}, "layer-0-weights.npy"),
@@ -174,7 +173,7 @@ DAMAGES = {
     "bad slope": (edit(lambda c: c["layers"][2]["activation"].update(slope="steep")), "layer 2"),
     "no inputs": (edit(lambda c: c["layers"][0].pop("inputs")), "inputs"),
     "huge size": (edit(lambda c: c["layers"][0].update(outputs=10**12)), "1000000000000"),
-    "large size": (edit(lambda c: c["layers"][0].update(inputs=2**20, outputs=2**20)), "1048576"),
+    "many parameters": (edit(lambda c: c["layers"][0].update(inputs=2**18, outputs=2**18)), "parameters"),
     "layers that do not fit": (edit(lambda c: c["layers"][3].update(inputs=5)), "takes 5"),
     "shape belied": (edit(lambda c: c["layers"][0]["arrays"]["bias"].update(shape=[5])), "layer-0-bias"),
     "another folder's file": (
@@ -199,23 +198,11 @@ def test_damage_is_named(tmp_path, subtests):
                 NeuralNetwork.load(saved)
             assert message in str(caught.value)
             assert str(saved) in str(caught.value)
-            assert caught.value.problems
     with pytest.raises(ModelFormatError, match="no such folder"):
         NeuralNetwork.load(tmp_path / "nowhere")
     (tmp_path / "file").touch()
     with pytest.raises(ModelFormatError, match="a file"):
         NeuralNetwork.load(tmp_path / "file")
-
-
-def test_all_damage_is_named_at_once(saved):
-    truncate(saved)
-    (saved / "layer-5-bias.npy").unlink()
-    edit(lambda c: c["cost"].update(name="hinge"))(saved)
-    with pytest.raises(ModelFormatError) as caught:
-        NeuralNetwork.load(saved)
-    for problem in ("hinge", "layer-3-weights.npy", "layer-5-bias.npy"):
-        assert problem in str(caught.value)
-    assert len(caught.value.problems) == 3
 
 
 def fail_at(monkeypatch, where, name, call, error):
@@ -247,7 +234,7 @@ def test_a_save_that_is_cut_short_leaves_the_old_network_whole(saved, monkeypatc
                     every_layer(seed=1).save(saved)
             np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
             assert [path.name for path in saved.parent.iterdir()] == ["model"]
-    saved.rename(saved.with_name(".model.old"))  # as a stop between the two renames leaves it
+    saved.rename(saved.with_name(".model.00000000.old"))  # as a stop between the two renames leaves it
     np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
     assert [path.name for path in saved.parent.iterdir()] == ["model"]
 
@@ -266,21 +253,11 @@ def test_a_network_that_cannot_come_back_is_not_saved(saved):
 
 def test_somebodys_files_are_never_replaced(tmp_path):
     (tmp_path / "thesis.txt").write_text("three years")
-    with pytest.raises(FileExistsError, match="something else"):
+    with pytest.raises(FileExistsError, match="left as it is"):
         every_layer().save(tmp_path)
-    with pytest.raises(FileExistsError, match="something else"):
+    with pytest.raises(FileExistsError, match="left as it is"):
         every_layer().save(tmp_path / "thesis.txt")
     assert (tmp_path / "thesis.txt").read_text() == "three years"
-
-
-def test_the_folder_that_the_program_works_in_stays_under_it(saved, monkeypatch):
-    classifier = DigitClassifier.load(MODELS_DIR / "digits" / "classic")
-    monkeypatch.chdir(saved)
-    for save in (every_layer().save, DeepQAgent(3, 2).save, classifier.save):
-        with pytest.raises(FileExistsError, match="works in"):
-            save(".")
-    NeuralNetwork.load(".").save("../other")
-    assert (saved / "config.json").samefile("config.json")
 
 
 def test_nothing_is_written_that_json_cannot_say(tmp_path):

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from ai.files import writing
-from ai.pilots.child import ACT, load
 from ai.pilots.folder import TEMPLATE, Measured, PilotFolder
 from ai.pilots.own import MeasuredPilot
 from ai.training.tasks import evaluate
@@ -22,7 +21,7 @@ def test_new_files_lie_beside_each_other_and_are_never_overwritten(tmp_path: Pat
     files.new()
     assert list(files.files()) == ["pilot", "pilot 2"]
     assert first.read_text() == "mine"
-    load(ACT, "pilot.py", files.files()["pilot 2"].read_text())
+    assert files.files()["pilot 2"].read_text() == TEMPLATE.read_text()
 
 
 def test_a_full_disk_leaves_no_half_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

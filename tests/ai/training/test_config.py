@@ -37,15 +37,15 @@ def test_a_setting_out_of_range_is_named(subtests):
         ({"num_envs": True}, "num_envs: true is no whole number"),
         ({"double": 1}, "double: 1 is neither true nor false"),
         ({"hidden": ()}, "hidden lies between"),
-        ({"hidden": (64.5, 64)}, r"hidden\[0\]: 64.5 is no whole number"),
-        ({"hidden": (True, 8)}, r"hidden\[0\]: true is no whole number"),
-        ({"hidden": ("64",)}, r"hidden\[0\]: '64' is no whole number"),
+        ({"hidden": (64.5, 64)}, "hidden: 0: 64.5 is no whole number"),
+        ({"hidden": (True, 8)}, "hidden: 0: true is no whole number"),
+        ({"hidden": ("64",)}, "hidden: 0: '64' is no whole number"),
         ({"schedule_decisions": 10**400}, "schedule_decisions lies between .* not 1000+…"),
         ({"schedule_decisions": 10**5000}, "schedule_decisions lies between .* not something very large"),
         ({"env": None}, "env: null is no text"),
         ({"spawn": "x" * 100_000}, "spawn is one of .*x{20}…$"),
-        ({"reward_weights": RewardWeights(time=True)}, r"reward_weights\.time: true is no finite number"),
-        ({"reward_weights": RewardWeights(time=10**400)}, r"reward_weights\.time: .* is no finite number"),
+        ({"reward_weights": RewardWeights(time=True)}, "reward_weights: time: true is no finite number"),
+        ({"reward_weights": RewardWeights(time=10**400)}, "reward_weights: time: .* is no finite number"),
     ]:
         with subtests.test(changes=changes), pytest.raises(ValueError, match=message):
             Config().changed(**changes)

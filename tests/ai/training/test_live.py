@@ -5,7 +5,7 @@ from itertools import chain, islice, pairwise
 import numpy as np
 import pytest
 
-from ai.files import remove_state
+from ai.files import STATE_FILE
 from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping
@@ -322,7 +322,7 @@ def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     assert np.isnan(before[0].loss)
     assert before[-1].mean_return < -50
     run.send(("save", tmp_path / "run"))
-    remove_state(tmp_path / "run")
+    (tmp_path / "run" / STATE_FILE).unlink()
     messages = messages_in(begin(resume=tmp_path / "run"), 60)
     assert "empty memory" in of(RunStarted, messages)[0].lost
     after = of(Progress, messages)

@@ -11,7 +11,6 @@ from ai.training import upbringing as bringing_up
 from ai.training.history import History
 from ai.training.preferences import FIRST, NEITHER, SECOND, SUMS, PaidMemory, Paying, Taste
 from ai.training.run import resume, save
-from ai.training.state import write_state
 from ai.training.taste_session import Asked, TasteSession
 from ai.training.upbringing import UPBRINGING, Upbringing
 
@@ -174,7 +173,6 @@ def test_answers_and_network_go_on_from_a_folder(tmp_path):
     for _ in range(5):
         upbringing.advance()
     save(upbringing, tmp_path / "kept")
-    write_state(tmp_path / "kept", upbringing.moment, upbringing.state())
     History(TasteSession.columns).write(tmp_path / "kept")
     again = resume(Upbringing, tmp_path / "kept")
     assert not again.lost

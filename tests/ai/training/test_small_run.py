@@ -32,15 +32,13 @@ def test_the_same_seed_gives_the_same_run_alone_or_beside_another():
     assert both[-1][0].value != both[-1][1].value
 
 
-@pytest.mark.parametrize("prioritised", [False, True])
-def test_the_memory_that_is_shown_is_the_one_that_is_drawn_from(prioritised: bool):
-    run = SmallRun(SMALL_RUN.changed(prioritised=prioritised, replay_size=400, learning_starts=64), 0)
+def test_the_memory_that_is_shown_is_the_one_that_is_drawn_from():
+    run = SmallRun(SMALL_RUN.changed(replay_size=400, learning_starts=64), 0)
     seen: list[float] = []
     for _ in range(60):
         state = run.advance()
-        assert state.memory.first == len(seen)
-        seen += state.memory.cells.state[:, 0].tolist()
-        assert state.memory.oldest == max(0, len(seen) - 400)
+        seen += run.replay.at(run.replay.newest(16)).state[:, 0].tolist()
+        assert (state.memory.oldest, state.memory.newest) == (max(0, len(seen) - 400), len(seen))
         for number, row in zip(state.memory.drawn, run.replay.drawn, strict=True):
             assert seen[number] == run.replay.transitions.state[row, 0]
     assert len(state.memory.drawn) == SMALL_RUN.batch_size * SMALL_RUN.gradient_steps
@@ -53,7 +51,6 @@ def test_a_memory_of_the_latest_drops_the_rest_when_the_day_changes():
     assert state.memory.oldest == 0
     state = run.advance()
     assert state.memory.oldest == 31 * 16 - 100
-    assert state.memory.first == 30 * 16
     assert state.flown.height.max() < 1.2
 
 
@@ -64,12 +61,10 @@ def test_those_that_are_tested_take_no_random_actions():
         assert np.array_equal(run.advance().tested.main, best == 1)
 
 
-def test_a_memory_that_is_cut_down_stays_of_its_kind_and_keeps_the_newest():
-    for prioritised in (False, True):
-        run = SmallRun(SMALL_RUN.changed(prioritised=prioritised), 0, Plan(change=30, keep=50))
-        for _ in range(30):
-            run.advance()
-        kind, before = type(run.replay), run.replay.state(50)
-        run._change()
-        assert type(run.replay) is kind
-        assert all(np.array_equal(part, before[name]) for name, part in run.replay.state(50).items())
+def test_a_memory_that_is_cut_down_keeps_the_newest():
+    run = SmallRun(SMALL_RUN, 0, Plan(change=30, keep=50))
+    for _ in range(30):
+        run.advance()
+    before = run.replay.state(50)
+    run._change()
+    assert all(np.array_equal(part, before[name]) for name, part in run.replay.state(50).items())

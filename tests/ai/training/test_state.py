@@ -1,13 +1,12 @@
 """A run that goes on has learnt what it had learnt, remembers it, and lands as well; what becomes of damaged states."""
 
 import json
-import shutil
 from importlib.util import find_spec
 
 import numpy as np
 import pytest
 
-from ai.files import state_folder
+from ai.files import STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training import state as states
 from ai.training.config import ANYWHERE, PRESETS, Config, gym_config
@@ -97,10 +96,6 @@ def test_the_best_network_and_its_score_are_those_of_before(tmp_path, monkeypatc
     assert np.array_equal(again.best_agent().online.values, training.best_agent().network.values)
 
 
-def files(folder):
-    return {path.name: path for path in state_folder(folder).iterdir()}
-
-
 def test_of_what_is_too_large_the_newest_is_kept(tmp_path, monkeypatch, subtests):
     monkeypatch.setattr(states, "MOST", 20_000)
     monkeypatch.setattr("ai.training.loop.MOST", 20_000)
@@ -113,14 +108,14 @@ def test_of_what_is_too_large_the_newest_is_kept(tmp_path, monkeypatch, subtests
             count = len(kept["action"])
             assert 0 < count < len(before["action"])
             assert all(np.array_equal(before[name][-count:], part) for name, part in kept.items())
-            assert sum(path.stat().st_size for path in files(tmp_path / "run").values()) < 30_000
+            assert (tmp_path / "run" / STATE_FILE).stat().st_size < 30_000
             on(again, 3)
 
 
 def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path):
     save(on(begun(SMALL.changed(prioritised=True)), 50), tmp_path / "run")
     rng, refused = np.random.default_rng(0), list[str]()
-    (path,) = files(tmp_path / "run").values()
+    path = tmp_path / "run" / STATE_FILE
     whole = path.read_bytes()
     for number in range(30):
         damaged = bytearray(whole)
@@ -135,8 +130,8 @@ def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path):
         except ModelFormatError as error:
             refused.append(str(error))
     assert len(refused) > 15
-    assert [problem for problem in refused if "without this folder" not in problem] == []
-    shutil.rmtree(state_folder(tmp_path / "run"))
+    assert [problem for problem in refused if "without this file" not in problem] == []
+    path.unlink()
     assert "empty memory" in resume(Training, tmp_path / "run").lost
 
 
@@ -160,17 +155,17 @@ def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
             change(state)
             patch.setattr(training, "state", lambda state=state: state)
             save(training, tmp_path / "run")
-            with pytest.raises(ModelFormatError, match="without this folder"):
+            with pytest.raises(ModelFormatError, match="without this file"):
                 resume(Training, tmp_path / "run")
 
 
 def test_a_state_of_another_version_is_refused_by_name_and_left(tmp_path):
     save(on(begun(SMALL), 20), tmp_path / "run")
-    (path,) = files(tmp_path / "run").values()
+    path = tmp_path / "run" / STATE_FILE
     for said in ({}, {"version": 1}, {"version": 3, "more": 4}, []):
         np.savez(path, described=np.frombuffer(json.dumps(said).encode(), np.uint8))
         held = path.read_bytes()
-        with pytest.raises(ModelFormatError, match=rf"{path.name} was saved by another version, and is left as it is"):
+        with pytest.raises(ModelFormatError, match=rf"{path.name}: was saved by another version, and is left as it is"):
             resume(Training, tmp_path / "run")
         assert path.read_bytes() == held
 
@@ -184,25 +179,23 @@ def test_a_process_that_is_killed_between_two_files_leaves_a_run_of_one_moment(t
     def killed(*_):
         raise OSError(5, "killed")
 
-    for moment in ("ai.training.loop.write_agent", "ai.training.run.write_state"):
-        on(training, 5)
-        with monkeypatch.context() as patch:
-            patch.setattr(moment, killed)
-            assert keeper.save(tmp_path / "run").problem == "killed"
-        assert known(resume(Training, tmp_path / "run")) == before
+    on(training, 5)
+    with monkeypatch.context() as patch:
+        patch.setattr("ai.training.run.write_state", killed)
+        assert keeper.save(tmp_path / "run").problem == "killed"
+    assert known(resume(Training, tmp_path / "run")) == before
     assert keeper.save(tmp_path / "run").problem == ""
     assert known(resume(Training, tmp_path / "run")) == known(training)
-    assert len(files(tmp_path / "run")) == 1
     keeper.end()
 
 
 def test_a_run_that_has_diverged_leaves_no_state(tmp_path):
     training = on(begun(SMALL), 20)
     save(training, tmp_path / "run")
-    assert state_folder(tmp_path / "run").exists()
+    assert (tmp_path / "run" / STATE_FILE).exists()
     training.restore_best()
     save(training, tmp_path / "run")
-    assert not state_folder(tmp_path / "run").exists()
+    assert not (tmp_path / "run" / STATE_FILE).exists()
 
 
 DECISIONS = 300_000  # a third is many flights of each lander: a stop costs those under way

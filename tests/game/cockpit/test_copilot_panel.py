@@ -73,9 +73,6 @@ def test_rows_that_are_not_known_anew_stay_for_half_a_second():
     unknown, recent = (Landing.UNKNOWN,) * 6, RecentLandings()
     first = Landings((Landing.LOST, *unknown[1:]), (0, Landing.LOST), 3, 0.1)
     assert recent.fill(first) == first
-    assert first.coasting == (0.1, False)
-    assert Landings((Landing.LANDS, *unknown[1:]), (0, Landing.LANDS), 3, 0.8).coasting == (0.8, True)
-    assert Landings(unknown, (0, Landing.UNKNOWN), 3, 0.8).coasting is None
     later = Landings((Landing.UNKNOWN, Landing.LANDS, *unknown[2:]), (1, Landing.LANDS), 1, 0.1)
     assert recent.fill(later).after == (Landing.LOST, Landing.LANDS, *unknown[2:])
     shown = [recent.fill(Landings(unknown, (2, Landing.UNKNOWN), 1, 0.1)).after[:2] for _ in range(8)]

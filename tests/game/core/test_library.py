@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.files import state_folder
 from ai.training.config import Config
 from ai.training.loop import Training
 from ai.training.run import save
@@ -227,9 +226,8 @@ def test_a_free_name_is_valid_and_nobodys(library: Library):
     assert library.free_name("y" * 40) == "y" * 38 + " 2"
 
 
-def test_what_is_deleted_is_gone_with_its_state_and_a_link_leaves_what_it_leads_to(library: Library, tmp_path: Path):
-    state = state_folder(add(library, "run"))
-    state.mkdir()
+def test_what_is_deleted_is_gone_and_a_link_leaves_what_it_leads_to(library: Library, tmp_path: Path):
+    add(library, "run")
     elsewhere = add(Library(tmp_path / "elsewhere"), "far")
     (library.folder / "link").symlink_to(elsewhere)
     for name in ("run", "link"):
@@ -309,14 +307,14 @@ def test_only_one_of_two_games_has_the_place_of_a_run_without_a_name(library: Li
 
 @pytest.mark.parametrize("name", ["run", ".training"])
 def test_a_save_that_was_stopped_between_its_renames_is_put_back(library: Library, name: str):
-    add(library, f".{name}.old", seed=4)
+    add(library, f".{name}.00000000.old", seed=4)
     found = library.rescued() if name.startswith(".") else next(iter(library.runs()), None)
     assert found is not None
     assert found.seed == 4
 
 
 def test_what_a_save_never_finished_is_cleared_away_in_time(library: Library):
-    old, fresh = add(library, "..training.new"), add(library, ".run.new")
+    old, fresh = add(library, "..training.00000000.new"), add(library, ".run.00000000.new")
     os.utime(old, (1e9, 1e9))
     assert library.runs() == []
     assert not old.exists()

@@ -107,22 +107,12 @@ def test_the_network_that_is_looked_into_is_chosen_under_more(drawing: Driver):
 
 def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver, monkeypatch):
     digits, given = scene(drawing), []
-    monkeypatch.setattr(digits.fixing, "begin", lambda _, image, *others: given.append((image, *others)))
+    monkeypatch.setattr(digits.fixing, "begin", lambda _, image, digit: given.append((image, digit)))
     draw(drawing, strokes(2))
     drawing.key(pygame.K_7)  # it has not been read yet
-    [(image, digit, _)] = given
+    [(image, digit)] = given
     assert digit == 7
     assert np.array_equal(image, preprocess_strokes(digits.pad.strokes))
-
-
-def test_how_it_is_prepared_and_the_readers_are_shown_when_asked_and_from_then_on(drawing: Driver, context: Context):
-    draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
-    before = len(drawing.form.widgets)
-    drawing.press_on("More")
-    assert len(drawing.form.widgets) == before + 1
-    assert context.settings.is_open("digits")
-    drawing.press_on("Less")
-    assert len(drawing.form.widgets) == before
 
 
 def test_an_empty_pad_asks_no_why(drawing: Driver, written: list[str]):
@@ -171,7 +161,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     context.models_dir = tmp_path / "models"
     driver = open_game(DigitsScene)
     assert scene(driver).chosen == "classic"
-    assert "config.json" in scene(driver).live.reader.problems["modern"]
+    assert "config.json" in scene(driver).live.problems["modern"]
     draw(driver, strokes(3))
     assert guess(driver) == 3
     driver.frames(3)
@@ -183,7 +173,7 @@ def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, conte
     draw(driver, strokes(3))
     driver.key(pygame.K_3)
     assert scene(driver).probabilities is None
-    assert set(scene(driver).live.reader.problems) == {"modern", "classic"}
+    assert set(scene(driver).live.problems) == {"modern", "classic"}
     assert driver.top_name == "DigitsScene"
 
 

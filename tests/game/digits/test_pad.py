@@ -3,7 +3,7 @@ import pygame
 import pytest
 
 from game.drawing.canvas import Canvas
-from game.scenes.digits.pad import PEN_WIDTH, DrawingPad, Stroke
+from game.scenes.digits.pad import DrawingPad, Stroke
 
 RECT = pygame.Rect(40, 70, 520, 520)
 
@@ -47,58 +47,32 @@ def test_a_stroke_goes_through_every_point_of_the_mouse_at_full_precision(pad: D
     assert np.hypot(*np.diff(path[:-1], axis=0).T).max() < 8  # and straight to the last
 
 
-def test_long_ways_are_bent_and_corners_stay_corners():
-    bend, corner = Stroke((0.0, 0.0)), Stroke((0.0, 0.0))
+def test_long_ways_are_bent():
+    bend = Stroke((0.0, 0.0))
     for point in ((60.0, 0.0), (110.0, 40.0), (120.0, 100.0)):
         bend.add(point)
-    for point in ((60.0, 0.0), (60.0, 60.0)):
-        corner.add(point)
-    assert min(y for x, y in bend.path if 0 < x < 60) < -1
-    assert all(abs(y) < 1e-9 or x == 60.0 for x, y in corner.path)
-
-
-def test_a_slow_pen_is_thicker():
-    slow, fast = Stroke((0.0, 0.0)), Stroke((0.0, 0.0))
-    for number in range(1, 30):
-        slow.add((2.0 * number, 0.0))
-        fast.add((40.0 * number, 0.0))
-    assert slow.widths[-1] > 1.2 * fast.widths[-1]
-
-
-def test_ink_lies_where_it_was_drawn_however_it_was_painted(pad: DrawingPad):
-    points = [(100, 100), (150, 130), (170, 200), (140, 260), (300, 300)]
-    fresh = fresh_pad()
-    drag(fresh, *points)
-    mouse(pad, pygame.MOUSEBUTTONDOWN, (points[0][0] + RECT.left, points[0][1] + RECT.top))
-    for x, y in points[1:]:
-        mouse(pad, pygame.MOUSEMOTION, (x + RECT.left, y + RECT.top))
-        assert pad.ink[y // 2, x // 2] == 1
-    assert pad.ink.shape == (260, 260)
-    assert np.abs(pad.ink - fresh.ink).mean() < 0.002
-    assert pad.ink[200:].max() == 0
-    rows = np.flatnonzero(pad.ink.any(axis=1))
-    assert rows[0] == pytest.approx(50 - PEN_WIDTH / 4, abs=2)
+    assert -10 < min(y for x, y in bend.path if 0 < x < 60) < -1
 
 
 def test_a_click_is_a_dot(pad: DrawingPad):
     drag(pad, (200, 300))
     assert len(pad.strokes) == 1
-    assert pad.ink[150, 100] == 1
-    assert 75 < pad.ink.sum() < 225
+    assert pad.ink()[150, 100] == 1
+    assert pad.ink().sum() == pytest.approx(133, rel=0.05)
 
 
 def test_undo_takes_back_strokes_and_clearing(pad: DrawingPad):
     pad.undo()
     drag(pad, (100, 100), (200, 100))
-    before = pad.ink.copy()
+    before = pad.ink()
     drag(pad, (100, 300), (200, 300))
     pad.undo()
-    assert np.array_equal(pad.ink, before)
+    assert np.array_equal(pad.ink(), before)
     pad.clear()
     assert pad.empty
-    assert pad.ink.max() == 0
+    assert pad.ink().max() == 0
     pad.undo()
-    assert np.array_equal(pad.ink, before)
+    assert np.array_equal(pad.ink(), before)
     pad.undo()
     assert pad.empty
 
@@ -114,7 +88,7 @@ def test_what_is_not_for_the_pad_is_left_alone(pad: DrawingPad):
 def test_leaving_the_pad_draws_nothing_outside_and_no_line_back(pad: DrawingPad):
     drag(pad, (260, 100), (260, 20), (260, -300), (400, -300), (400, 20), (400, 100))
     assert len(pad.strokes) == 2
-    assert pad.ink[:, 150:180].max() == 0
+    assert pad.ink()[:, 150:180].max() == 0
     pad.undo()
     assert pad.empty
 

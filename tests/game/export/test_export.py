@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 from PIL import Image
 
@@ -132,16 +133,16 @@ def test_a_name_that_no_system_takes_is_made_one_and_no_picture_takes_the_place_
         with subtests.test(file=file):
             scene.record = replace(record, entry=replace(record.entry, file=file))
             driver.press_on(texts.REPLAY_EXPORT)
-            path = scene.export.path
+            path = driver.app.context.film.path
             assert path.parent == folder
             assert not path.exists()
             path.touch()
             if file in ("", "a flight.json"):
                 assert path.stem[-1] > "2"
-            scene._stop_export()
+            driver.press_on(next(widget.label for widget in driver.form.widgets if "%" in widget.label))
 
 
-def test_a_film_is_made_while_the_replay_plays_and_can_be_stopped_and_leaving_ends_its_process(
+def test_a_film_is_made_while_the_replay_plays_and_after_it_is_left_and_can_be_stopped(
     replay: tuple[Driver, ReplayScene], tmp_path: Path
 ):
     driver, scene = replay
@@ -155,6 +156,9 @@ def test_a_film_is_made_while_the_replay_plays_and_can_be_stopped_and_leaving_en
     assert driver.said == texts.EXPORT_STOPPED
     driver.wait(lambda: not multiprocessing.active_children())  # on a busy machine even the killed take a moment
     driver.press_on(texts.REPLAY_EXPORT)
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(2)
+    assert multiprocessing.active_children()
     driver.app.close()
     deadline = time.monotonic() + 20
     while multiprocessing.active_children() and time.monotonic() < deadline:
@@ -164,10 +168,10 @@ def test_a_film_is_made_while_the_replay_plays_and_can_be_stopped_and_leaving_en
 
 @pytest.mark.slow
 def test_a_folder_that_cannot_be_had_is_reported(replay: tuple[Driver, ReplayScene], tmp_path: Path):
-    driver, scene = replay
+    driver, _ = replay
     (tmp_path / "pictures").write_text("in the way")
     driver.press_on(texts.REPLAY_EXPORT)
-    driver.wait(lambda: scene.export is None)
+    driver.wait(lambda: driver.app.context.film is None)
     assert "could not be saved" in driver.said
     assert "File exists" in driver.said
     assert "Errno" not in driver.said
@@ -177,13 +181,13 @@ def test_a_folder_that_cannot_be_had_is_reported(replay: tuple[Driver, ReplaySce
 class Endless:
     """An export that never ends by itself."""
 
-    share, over, problem = 0.0, False, ""
+    share = 0.0
 
     def __init__(self, _scene: object, _record: Record, path: Path, **_: object) -> None:
-        self.path, self.closed = path, False
+        self.path = path
 
-    def poll(self) -> None:
-        """Go on."""
+    def follow(self) -> str:
+        return ""
 
     def close(self) -> None:
-        self.closed = True
+        """End."""

@@ -12,7 +12,7 @@ from game.core import texts
 from game.core.clock import TimeScale
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
-from game.flight.forecast import Forecast, coast_path
+from game.flight.foresight import Preview
 from game.flight.logbook import describe
 from game.flight.networks import DECISION_STEPS
 from game.flight.outcomes import outcome_card, qualities
@@ -57,15 +57,17 @@ def test_without_a_network_nothing_can_be_handed_over():
     assert flight.chooser.hand is StickHolder.HUMAN
 
 
-def test_the_path_ahead_is_the_way_it_then_goes_in_the_wind_too():
-    for mission, points in (("", 15), ("wind", 9)):
+def test_the_path_without_thrust_is_the_way_it_then_goes_in_the_wind_too():
+    for mission in ("", "wind"):
         flight = begun(2, mission=mission)
-        path = coast_path(flight.env)
-        assert len(path) > points
-        for place in path[1:-1][:points]:
-            for _ in range(10):
+        drift = Preview(flight.env)
+        while not len(drift.path):
+            drift.follow(5)
+        assert len(drift.path) > 15
+        for place in drift.path[1:-1]:
+            for _ in range(6):
                 flight.step()
-            assert np.abs(place - flight.env.position[0]).max() < 0.03, mission
+            assert np.array_equal(place, flight.env.position[0]), mission
 
 
 def test_a_swarm_flies_again_and_again_counts_and_is_drawn_without_a_leap():
@@ -210,13 +212,13 @@ def test_whatever_lies_in_the_players_folder_is_named_and_never_raises(tmp_path:
 
 def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
     alone, watched = begun(7, ScriptedPilot()), begun(7, ScriptedPilot())
-    forecast = Forecast(ScriptedPilot())
+    forecast = Preview(watched.env, ScriptedPilot())
     for flight in (alone, watched):
         flight.chooser.hand_over()
     while not alone.over:
         alone.step()
         watched.step()
-        forecast.follow(watched.env)
+        forecast.follow(2)
         if alone.at == 120:
             assert abs(forecast.path[-1, 0] - watched.env.pad[0, 0]) < watched.env.pad_width[0] / 2
             assert forecast.path[-1, 1] - watched.env.pad[0, 1] - PARAMS.stand < 0.5
@@ -225,10 +227,11 @@ def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
 
 
 def test_a_forecast_is_flown_under_the_gravity_of_the_flight():
-    flight, forecast = begun(7, ScriptedPilot()), Forecast(ScriptedPilot())
+    flight = begun(7, ScriptedPilot())
+    forecast = Preview(flight.env, ScriptedPilot())
     flight.env.gravity *= 1.4
     while not len(forecast.path):
-        forecast.follow(flight.env)
+        forecast.follow(2)
     flight.chooser.hand_over()
     for _ in range(10 * DECISION_STEPS):
         flight.step()
@@ -257,9 +260,6 @@ def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
     for _ in range(70):
         swarm.step()
     assert swarm.decided[0] == pilot.asked == 10
-    forecast = Forecast(pilot := TrainedAtSeven())
-    forecast.follow(flight.env, 5)
-    assert forecast._ahead.frame_skip == 7
 
 
 def test_at_its_own_pace_every_update_is_a_step():

@@ -148,7 +148,7 @@ def test_it_says_since_when_no_plan_is_held_and_why(agent):
             flight.chooser.guard.ahead.problem = "no process"
         fly(flight, lambda _: Push(), most=flight.at + 1)
         since = "0.1" if why in ("off", "process") else "0.0"
-        assert why_not_saved(flight, None) == texts.GUARDIAN_BARE[why].format(since=since), why
+        assert why_not_saved(flight) == texts.GUARDIAN_BARE[why].format(since=since), why
 
 
 def test_without_its_process_or_at_nought_nothing_is_guarded(agent):

@@ -12,10 +12,9 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.learn import pay
 from game.scenes.learn.choice import MOMENTS
-from game.scenes.learn.memory import LATEST, MemoryChapter
+from game.scenes.learn.memory import KEPT, MemoryChapter
 from game.scenes.learn.pay import PAYS
-from game.scenes.learn.runs import BOUND, DARING, NORMALISED, PAY, DaringChapter, TargetChapter, config_of
-from game.ui.context import Context
+from game.scenes.learn.runs import BOUND, DARING, PAY, RIGHT
 
 
 def test_no_flight_can_score_more_than_the_bound():
@@ -44,20 +43,14 @@ def test_what_the_shipped_network_was_paid_for_is_what_chapter_6_says():
         assert 80 < way < 120, f"the way of {seed}, {spawn}, {decisions} pays about 100"
 
 
-def test_a_chapter_says_once_how_small_runs_differ_from_those_of_train(context: Context):
-    modern = PRESETS["modern"]
-    chapter = TargetChapter(context)
-    ours, why = chapter.configs()[0], chapter.words["differs"]
-    assert f"{modern.batch_size} memories at a time, not {ours.batch_size}" in why
-    assert texts.LEARN_SMALL_STEPS.format(count=modern.n_step) + " ahead" in why
-    assert f"not {texts.LEARN_SMALL_STEPS.format(count=ours.n_step)}" in why
+def test_modern_is_what_chapters_5_and_7_say():
+    modern, paid = PRESETS["modern"], pay.config_of(PAYS["landing"])
+    assert modern.layer_normalisation
     assert modern.fly_target
-    assert ours.target_judges
     assert not modern.target_judges
-    assert not any("differs" in kind(context).words for kind in (MemoryChapter, DaringChapter)), "said once"
-    paid = pay.config_of(PAYS["landing"])
     same = ("batch_size", "n_step", "target_judges", "double", "hidden", "layer_normalisation", "discount")
     assert [getattr(paid, name) for name in same] == [getattr(modern, name) for name in same]
+    assert f"{BOUND:g}" in texts.LEARN_TARGET_WHY
 
 
 def test_values_can_run_away_without_a_target_network_and_do_not_with_it():
@@ -70,7 +63,7 @@ def test_values_can_run_away_without_a_target_network_and_do_not_with_it():
 
 
 def test_normalised_layers_keep_values_in_bounds_without_a_copy():
-    run = SmallRun(config_of(NORMALISED), 0)
+    run = SmallRun(RIGHT[1], 0)
     assert max(run.advance().value for _ in range(160)) < BOUND, "none of ten passed it"
 
 
@@ -91,7 +84,7 @@ def test_daring_can_find_a_landing_that_is_only_paid_at_the_end():
 def test_the_latest_memories_alone_hold_nothing_of_yesterday():
     # What comes of it differs from seed to seed and from processor to processor: `benchmarks.small_runs`.
     yesterday, today = 40, 20
-    for keep in (LATEST, None):
+    for keep in KEPT:
         run = SmallRun(SMALL_RUN, 0, MemoryChapter.PLAN._replace(change=yesterday, keep=keep))
         for _ in range(yesterday + today):
             run.advance()

@@ -7,12 +7,13 @@ import pytest
 
 from engine import Circle
 from game.core import texts
+from game.drawing.tokens import INK
 from game.scenes.physics.exhibit import Exhibit, Quantity, speed
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from tests.support.driver import Driver
 
-FALL = ("Fall", "The speed of a fall follows from its height.", {"always": "It fell at {speed:.1f} m/s."})
+FALL = ("Fall", "The speed of a fall follows from its height.", "It fell at {speed:.1f} m/s.")
 RADIUS = 0.5
 
 
@@ -23,7 +24,7 @@ class Fall(Exhibit):
     quantities = (Quantity("height", (2.0, 8.0), 5.0, 0.5),)
 
     def build(self) -> None:
-        self.ball = self.add(Circle(RADIUS), (0.0, self.values["height"] + RADIUS), "bright-disc")
+        self.ball = self.add(Circle(RADIUS), (0.0, self.values["height"] + RADIUS), INK)
         self.speed = 0.0
 
     def observe(self) -> None:

@@ -11,7 +11,6 @@ import pytest
 from game.cli import add_commands
 from game.core import texts
 from game.drawing.tokens import HUMAN, NET
-from game.scenes.physics.bodies import scale_force
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import GRAVITIES, PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
@@ -70,11 +69,8 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
     gallery.form.focus(gallery.form.widgets[0])
     for press_it, number in (
         (lambda: gallery.key(pygame.K_RIGHT), 1),
-        (lambda: gallery.keys(pygame.K_b, pygame.K_b), -1),
-        (lambda: gallery.key(pygame.K_n), 0),
         (lambda: gallery.click(gallery.choice(texts.EXHIBITS[names[0]][0])._places[3].center), 3),
-        (lambda: gallery.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER), 4),
-        (lambda: gallery.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT), 3),
+        (lambda: gallery.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT), 2),
     ):
         press_it()
         assert scene(gallery).chosen == names[number]
@@ -85,7 +81,7 @@ def test_gravity_is_chosen(gallery: Driver):
     gallery.choice(texts.PHYSICS_GRAVITIES[0]).choose(1)
     assert scene(gallery).exhibit is not first
     assert scene(gallery).exhibit.world.gravity.tolist() == [0.0, -EARTH]
-    gallery.key(pygame.K_n)
+    gallery.choice(texts.EXHIBITS["stack"][0]).choose(1)
     assert scene(gallery).exhibit.world.gravity.tolist() == [0.0, -EARTH]
 
 
@@ -111,7 +107,7 @@ def test_what_cannot_move_or_has_left_the_room_is_not_gripped_and_runs_over_no_c
     physics = scene(driver)
     press(driver, pygame.MOUSEBUTTONDOWN, tuple(physics.view(1.0).points((-8.0, 2.0))))  # the slope
     assert physics.grip is None
-    driver.keys(pygame.K_b, pygame.K_b)  # to columns
+    driver.choice(texts.EXHIBITS["stack"][0]).choose(0)
     box, picture = physics.exhibit.bodies[0], physics.room_row.picture
     area = (picture.left, picture.top - 40, 300, 38)
     before = shows(driver, NET, area), shows(driver, HUMAN, area)
@@ -157,13 +153,9 @@ def test_space_stops_a_period_steps_and_r_begins_anew(gallery: Driver):
 def test_contacts_are_drawn_in_blue_when_asked_for(gallery: Driver):
     gallery.frames(10)
     column = scene(gallery).room_row.picture
-    for asked in (False, True, False):
-        assert (shows(gallery, NET, column) > 100) is asked
-        gallery.key(pygame.K_c)
-    for gravity in GRAVITIES:
-        force, length = scale_force(gravity)
-        assert 24 < length <= 60
-        assert length / force == pytest.approx(6.0 / gravity)
+    assert shows(gallery, NET, column) <= 100
+    gallery.press_on(texts.PHYSICS_CONTACTS)
+    assert shows(gallery, NET, column) > 100
 
 
 def test_f1_explains_one_thing_after_the_other(gallery: Driver):
@@ -193,29 +185,16 @@ def test_a_slider_is_dragged_and_the_exhibit_begins_anew_with_its_value(open_gam
     assert np.degrees(exhibit.boxes[0].angle[0]) == pytest.approx(-exhibit.values["degrees"], abs=0.1)
 
 
-def test_a_quantity_is_changed_without_a_mouse_stays_and_is_put_back(open_game: Open):
+def test_a_quantity_is_changed_without_a_mouse_and_stays(open_game: Open):
     player = Player(open_game(PhysicsScene, "bounce"), "pad")
     for _ in range(12):
         if player.form.focused is not slider(player, "restitution"):
             player.press("down")
     player.press("left")
     player.frames(2)
-    player.keys(pygame.K_n, pygame.K_b)  # to another exhibit and back
+    for exhibit in (0, 3):  # to another exhibit and back
+        player.choice(texts.EXHIBITS["stack"][0]).choose(exhibit)
     assert scene(player).exhibit.values["restitution"] == slider(player, "restitution").value == pytest.approx(0.7)
-    assert "e = 0.70" in texts.EXHIBITS["bounce"][2]["falling"].format(**scene(player).exhibit.figures())
-    player.choose(texts.PHYSICS_START_VALUES)
-    assert scene(player).exhibit.values["restitution"] == slider(player, "restitution").value == 0.75
-
-
-def test_an_exhibit_of_many_bodies_waits_until_the_slider_rests(open_game: Open):
-    driver = open_game(PhysicsScene, "heap")
-    driver.frames(5)
-    first = scene(driver).exhibit
-    slider(driver, "count").set(40.0)
-    driver.frames(3)
-    assert scene(driver).exhibit is first
-    driver.frames(6)
-    assert len(scene(driver).exhibit.bodies) == 40
 
 
 # One step
@@ -237,25 +216,20 @@ def test_the_step_is_opened_from_the_gallery_and_left_again(gallery: Driver):
 
 def test_pieces_are_walked_through_by_keys_and_chosen_with_the_mouse(open_game: Open):
     driver = open_game(lambda context: PhysicsStepScene(context, fallen()))
-    shown, kinds = driver.top, []
-    for _ in range(len(shown.pieces)):
-        kinds.append(shown.piece.kind)
-        driver.key(pygame.K_RIGHT)
-    assert shown.piece.kind == "end"
-    assert kinds == [piece.kind for piece in shown.pieces]
-    assert {"boxes", "axes", "contact", "forces", "memory", "impulses", "motion", "end"} <= set(kinds)
+    shown = driver.top
+    assert shown.pieces == ["boxes", "axes", "contact", "forces", "impulses", "motion"]
+    for piece in shown.pieces:
+        assert shown.piece == piece
+        driver.key(pygame.K_PERIOD)
+        driver.frames(1)
     first = shown.pair
-    driver.key(pygame.K_n)
+    driver.press_on(texts.STEP_OTHER)
     assert shown.pair is not first
-    assert shown.piece.kind == "end"
-    driver.key(pygame.K_b)
-    word = texts.STEP_PIECES["impulses"][0]
-    tabs = driver.choice(word)
-    driver.click(tabs._places[list(tabs.options).index(word)].center)
-    assert shown.piece.impulse.iteration == 1
+    assert shown.piece == "motion"
+    driver.click(driver.choice(texts.STEP_PIECES["axes"][0])._places[1].center)
+    assert shown.piece == "axes"
     driver.click(driver.hints()[texts.HINT_NEXT_PIECE])
-    assert shown.piece is shown.pieces[shown.place]
-    assert shown.piece.impulse.iteration == 2
+    assert shown.piece == "contact"
 
 
 # The command

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pygame
 import pytest
 
@@ -153,25 +152,6 @@ def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(share
     panels.clear()
     shared.frames(3)
     assert not panels
-
-
-def test_a_mark_on_the_way_of_coasting_says_whether_the_network_still_lands_from_there(open_game: Open, monkeypatch):
-    driver = open_game(PlayScene, 4)
-    place(driver, 0.0, 12.0, 1.0, 0.0, 0, 0)
-    flown, canvas = play(driver).flown, driver.app.canvas
-    flown.path_preview.drift.path = np.linspace((0.0, 12.0), (9.0, 3.0), 55)  # a metre a second either way
-    view, shapes = flown.scenery.view(canvas.scale), []
-    monkeypatch.setattr(Canvas, "marker", lambda self, shape, at, *_: shapes.append((shape, at)))
-    for coasting, shape, key in (((0.8, True), "circle", "lands"), ((0.5, False), "cross", "lost")):
-        shapes.clear()
-        canvas.explained.clear()
-        flown.path_preview.draw(canvas, view, 0.0, coasting)
-        x, y = view.metres(dict(shapes)[shape]).tolist()
-        assert (x, 12.0 - y) == pytest.approx((coasting[0], coasting[0]), abs=0.05)
-        (mark,) = canvas.explained
-        assert mark.now() == texts.EXPLAIN_COASTING_NOW[key].format(seconds=coasting[0])
-    flown.path_preview.draw(canvas, view, 0.0)
-    assert len(canvas.explained) == 1
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (800, 600)])

@@ -1,7 +1,7 @@
 """Networks beside the player: why help did not save a flight, when it stepped in, and which one flies elsewhere."""
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,23 +10,20 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.futures import Lookahead
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.missions import MISSIONS
-from ai.lander.moment import Moment
 from ai.lander.push import KEYS
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight import networks
-from game.flight.flight import Flight, StickHolder
-from game.flight.foresight import HELD, LastChance, SixFutures
+from game.flight.flight import StickHolder
+from game.flight.foresight import HELD, SixFutures
 from game.flight.outcomes import outcome_card, qualities
 from game.input.bindings import Command
 from game.scenes.play import interventions
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.interventions import Interventions
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.words import why_not_saved
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import begun, fly_out, play
@@ -39,53 +36,12 @@ def agent() -> DeepQAgent:
     return DeepQAgent.load(MODELS_DIR / "lander" / "modern")
 
 
-def noisy() -> Iterator[int]:
-    """Hold the left jet, and slip to the main engine now and then; four steps are one press."""
-    rng = np.random.default_rng(2)
-    while True:
-        yield from [1 + 3 * int(rng.random() < 0.15)] * 4
-
-
-def lost(agent: DeepQAgent) -> tuple[Flight, LastChance]:
-    """Turn all the way with noisy hands and a help that cannot keep it upright."""
-    flight, chance, held = begun(2, agent), LastChance(agent), noisy()
-    flight.chooser.help(0.01)
-    while not flight.over:
-        chance.note(flight.env)
-        flight.step(KEYS[next(held)])
-    while not chance.known:
-        chance.look(50)
-    return flight, chance
-
-
-def test_a_flight_that_help_did_not_save_says_why_and_what_would_have(agent: DeepQAgent):
-    flight, chance = lost(agent)
-    assert flight.wrecked
-    assert chance.seconds is not None
-    sentence = texts.LAST_CHANCE.format(seconds=f"{chance.seconds:.1f}")
-    assert why_not_saved(flight, chance) == f"{texts.NOT_SAVED_BY_VALUES} {sentence}"
-
-
-def test_what_would_have_saved_it_does(agent: DeepQAgent):
-    _, chance = lost(agent)
-    assert chance.seconds is not None
-    again, held = begun(2, agent), noisy()
-    again.chooser.help(0.01)
-    while float(again.env.time[0]) < chance.seconds:
-        again.step(KEYS[next(held)])
-    [plan] = Lookahead(agent).plans(Moment.of(again.env), [(0, (KEYS[0],))])
-    assert plan is not None
-
-
 def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAgent):
     flight = begun(4, agent)
     futures = SixFutures(agent)
-    futures.begin(begun(9, agent).env)  # of another moment, left at once
-    futures.follow(3)
-    futures.begin(flight.env)
     before = flight.env.snapshot()
-    while futures.under_way:
-        futures.follow(10)
+    while not futures.paths:
+        futures.follow(flight.env, 10)
     assert all(lands is not None for lands in futures.lands)
     for action, (path, lands) in enumerate(zip(futures.paths, futures.lands, strict=True)):
         flown = begun(4, agent)

@@ -12,7 +12,7 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.validation import Confusion
-from ai.files import state_folder
+from ai.files import STATE_FILE
 from game.core import texts
 from game.core.scene import Scene
 from game.core.worker import WorkerState
@@ -109,10 +109,10 @@ def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_pa
     digit_run: Any = TrainingRun(DIGITS, DigitModels(tmp_path))
     digit_run.begin(SMALL, 0)
     unsaved = digit_run.collection.unsaved
-    half = unsaved.with_name(f".{unsaved.name}.old")  # between the two renames of a save
+    half = unsaved.with_name(f".{unsaved.name}.00000000.old")  # between the two renames of a save
     half.mkdir(parents=True)
-    (half / "training.json").write_bytes(b"")
-    state_folder(unsaved).mkdir()
+    for name in ("training.json", STATE_FILE):
+        (half / name).write_bytes(b"")
     assert not digit_run.unfinished
     assert half.exists()
     digit_run.close()

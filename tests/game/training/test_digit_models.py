@@ -10,7 +10,7 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from game.core.assets import MODELS_DIR
-from game.scenes.digits.reader import Reader
+from game.scenes.digits.reader import saliency
 from game.scenes.digits.scene import DigitsScene
 from game.training.library import DigitModels, called, models_by_name
 from game.ui.context import Context
@@ -55,9 +55,7 @@ def test_names_are_those_of_folders_and_none_hides_another(context: Context):
 
 @pytest.mark.parametrize("config", CONFIGS)
 def test_networks_of_any_shape_are_explained(context: Context, config):
-    reader = Reader()
-    assert reader.load("own", save(context, "own", config))
-    why = reader.saliency("own", np.eye(28, dtype=np.float32))
+    why = saliency(DigitClassifier.load(save(context, "own", config)), np.eye(28, dtype=np.float32))
     assert np.isfinite(why).all()
 
 
@@ -87,7 +85,7 @@ def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver
     driver = reading(open_game, context)
     driver.choice(own[0]).choose(2)
     assert driver.top.chosen == "modern"
-    assert "config.json" in driver.top.live.reader.problems[own[0]]
+    assert "config.json" in driver.top.live.problems[own[0]]
     assert own[0] not in driver.choice(own[1]).options
     draw(driver, strokes(3))
     guess(driver)

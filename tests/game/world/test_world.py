@@ -1,5 +1,3 @@
-from collections.abc import Callable
-
 import numpy as np
 import pygame
 import pytest
@@ -7,12 +5,8 @@ import pytest
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
-from engine import Circle, Polygon, Sprite, World
+from engine import Sprite
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import EMBER, HUMAN, INK
-from game.scenes.physics import bodies
-from game.scenes.physics.bodies import Outlines
-from game.scenes.physics.exhibits import EXHIBITS
 from game.world import lander as art
 from game.world.camera import Camera, View
 from game.world.landscape.backdrop import Backdrop
@@ -104,61 +98,6 @@ def test_wind_is_seen_to_go_its_way_and_is_a_matter_of_time_alone():
     assert np.array_equal(seen(1.0), first)
     env.outcome[:] = Outcome.LANDED
     assert not np.array_equal(seen(1.0), first)  # it goes on blowing
-
-
-# Sprites are what the gallery and the lander are drawn from: by image key, size and layer.
-
-MIDDLE = (640, 360)
-
-
-@pytest.fixture
-def drawn() -> Callable[[list[Sprite]], tuple[int, int, int]]:
-    """Draw sprites and return the colour in the middle of the view."""
-
-    def draw(sprites: list[Sprite]) -> tuple[int, int, int]:
-        canvas = Canvas(pygame.Surface((1280, 720)))
-        poses = np.array([[*sprite.body.position[0], sprite.body.angle[0]] for sprite in sprites])
-        Outlines(sprites).draw(canvas, View(1.0, (0.0, 0.0)), poses)
-        red, green, blue, _ = canvas.surface.get_at(MIDDLE)
-        return red, green, blue
-
-    return draw
-
-
-def test_every_sprite_of_the_gallery_covers_the_shape_that_collides(subtests: pytest.Subtests):
-    for name in EXHIBITS:
-        with subtests.test(name=name):
-            exhibit = EXHIBITS[name](1.62)
-            outlines = Outlines(exhibit.sprites)
-            assert {sprite.body for sprite in exhibit.sprites} >= set(exhibit.bodies)
-            for sprite, (body, outline) in zip(exhibit.sprites, outlines.shapes, strict=True):
-                shape = exhibit.world.shapes[body.index]
-                assert sprite.body is body
-                if isinstance(shape, Circle):
-                    assert isinstance(outline, Circle)
-                    assert outline.radius == shape.radius
-                else:
-                    assert isinstance(outline, Polygon)
-                    np.testing.assert_allclose(outline.vertices, shape.vertices, atol=1e-9)
-
-
-def test_the_highest_layer_is_seen_whatever_the_order(drawn):
-    world = World()
-    low, high = (world.add(Polygon.box(2.0, 2.0), (0.0, 0.0)) for _ in range(2))
-    sprites = [Sprite(low, "box", (2.0, 2.0), layer=1), Sprite(high, "bright-box", (2.0, 2.0), layer=2)]
-    alone = drawn([Sprite(low, "bright-box", (2.0, 2.0))])
-    assert drawn(sprites) == drawn(sprites[::-1]) == alone != drawn(sprites[:1])
-
-
-def test_a_picture_is_found_by_its_key_and_drawn_at_the_size_of_the_sprite(drawn, monkeypatch: pytest.MonkeyPatch):
-    body = World().add(Circle(1.0), (0.6, 0.0))
-    before = drawn([Sprite(body, "disc", (2.0, 2.0))])
-    assert drawn([Sprite(body, "disc", (0.4, 0.4))]) != before
-    monkeypatch.setitem(bodies.PICTURES, "disc", bodies.SpriteShape((), HUMAN))
-    assert drawn([Sprite(body, "disc", (2.0, 2.0))]) != before
-    with pytest.raises(KeyError, match="trebuchet"):
-        Outlines([Sprite(body, "trebuchet", (2.0, 2.0))])
-    assert bodies.PICTURES["ember-disc"].colour == EMBER != bodies.PICTURES["bright-disc"].colour == INK
 
 
 @pytest.mark.parametrize("calm", [False, True])
