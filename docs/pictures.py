@@ -89,7 +89,7 @@ SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {
     "cockpit": Settings(help="guide", three_pads=True),
-    "train": Settings(slow_runs=False, lesson_offered=True),
+    "train": Settings(slow_runs=False),
 }
 
 MOVING = "flight"

@@ -1,8 +1,7 @@
-"""Recent curves of a training run, as hints and captions look at them."""
+"""Recent curves of a training run, as hints and verdicts look at them."""
 
 from __future__ import annotations
 
-from contextlib import suppress
 from operator import attrgetter
 from typing import Final
 
@@ -13,7 +12,7 @@ from ai.environment import Doubles
 from ai.lander.environment import LIMITS
 from ai.lander.rewards import FEET_STEPS_PAID
 from ai.training.config import Config
-from ai.training.history import REVERTED, History, SettingChange
+from ai.training.history import History, SettingChange
 
 ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
 FALLEN: Final = 0.3  # share of flights fewer than before a change, from which that is to blame
@@ -22,11 +21,12 @@ RATES: Final = ("learning_rate", "final_learning_rate")
 _FARTHEST: Final = 25.0  # metres from the pad, at the most
 _FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
 _FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
-_PART: Final = 0.3  # of a run, the last: by it is judged whether a curve rises
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
+_ENDS: Final = {"crashes": "crashed", "hovers": "timed_out", "leaves": "out_of_bounds"}  # columns, by captions
+_MOST: Final = 0.5  # share of flights that are most of them
 # Rates above which no step is sensible, by the optimizer. Modern still learns at 0.03, not at 0.1; classic's values
 # have diverged at 0.1.
-_TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
+TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
 
 
 class RecentCurves:
@@ -40,36 +40,9 @@ class RecentCurves:
         """Median of a column over the last points that are finite; NaN without any."""
         return median(self.history[name][-points:])
 
-    def now(self, name: str) -> float:
-        """Return the latest finite number of a column, as it stands above its chart; NaN without any."""
-        values = _finite(self.history[name])
-        return float(values[-1]) if len(values) else float("nan")
-
-    def before(self, name: str) -> float:
-        """Return the mean of a column in the first half of the last part of the run."""
-        first, middle = self._last_part
-        return mean(self.history[name][first:middle])
-
-    def highest(self, name: str) -> float:
-        """Return the highest mean of eight points of a column in the last part of the run."""
-        values = _finite(self.history[name][self._last_part[0] :])
-        windows = np.lib.stride_tricks.sliding_window_view(values, min(8, len(values)))
-        return float(windows.mean(axis=1).max())
-
     def is_late(self) -> bool:
         """Whether a run should be landing by now."""
         return self.last("decisions", 1) >= ENOUGH or self.last("episodes", 1) >= _FLIGHTS
-
-    def gained(self, name: str) -> float:
-        """Return how much a column rose from the first to the second half of the last part of the run."""
-        return mean(self.history[name][self._last_part[1] :]) - self.before(name)
-
-    @property
-    def _last_part(self) -> tuple[int, int]:
-        """Rows at which the last part of the run begins, and its second half."""
-        decisions = self.history["decisions"]
-        first, middle = np.searchsorted(decisions, decisions[-1] * np.array([1.0 - _PART, 1.0 - _PART / 2]))
-        return int(first), int(middle)
 
     def by_hundreds(self) -> Doubles:
         """Return the share that landed of each successive hundred flights of this stage: none counts twice."""
@@ -120,25 +93,20 @@ class RecentCurves:
         except AttributeError:  # a way back, or what a file says
             return False
 
-    def damaged_at(self) -> int | None:
-        """Return when steps that were far too long began, in decisions; None if none since it last went back."""
-        config, began = self.config, None
-        changes = [each for each in self.history.setting_changes if each.name in (*RATES, REVERTED)]
-        since = self.history["decisions"][-1]
-        for each in [*reversed(changes), None]:
-            if rate_too_high(config, int(since)):
-                began = 0 if each is None else each.decisions
-            if each is None or each.name == REVERTED:
-                break
-            since = each.decisions
-            with suppress(ValueError):  # a file may say what no knob can be
-                config = config.changed(**{each.name: each.before})
-        return began
-
 
 def rate_too_high(config: Config, decisions: int) -> bool:
     """Whether the learning rate after so many decisions is one at which no step is sensible."""
-    return learning_rate(config, decisions) > _TOO_HIGH[config.optimizer]
+    return learning_rate(config, decisions) > TOO_HIGH[config.optimizer]
+
+
+def caption(history: History) -> str:
+    """Return why no flight lands, the name of a text below the chart of landings; empty while some land."""
+    landed = _finite(history["success_rate"])
+    if not len(landed):
+        return "unknown" if len(history) else ""
+    if landed[-1] > 0:
+        return ""
+    return next((name for name, column in _ENDS.items() if history[column][-1] >= _MOST), "none")
 
 
 def _finite(values: Doubles) -> Doubles:
@@ -149,12 +117,6 @@ def median(values: Doubles) -> float:
     """Return the median of the finite values; NaN without any."""
     values = _finite(values)
     return float(np.median(values)) if len(values) else float("nan")
-
-
-def mean(values: Doubles) -> float:
-    """Return the mean of the finite values; NaN without any."""
-    values = _finite(values)
-    return float(values.mean()) if len(values) else float("nan")
 
 
 def loss_explodes(run: RecentCurves) -> bool:

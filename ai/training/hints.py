@@ -12,15 +12,14 @@ from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
 from ai.training.config import Config
-from ai.training.curves import COLLAPSE, RATES, RecentCurves, loss_explodes, rate_too_high, values_run_away
+from ai.training.curves import COLLAPSE, RATES, TOO_HIGH, RecentCurves, rate_too_high
 from ai.training.history import History
 
 HOLD: Final = 2.0  # seconds of training for which a rule must hold before its hint appears
 STAY: Final = 6.0  # seconds for which a hint stays at least: one that flickers cannot be read
-REST: Final = 45.0  # seconds for which one that was applied or dismissed does not come back
+REST: Final = 45.0  # seconds for which one that was answered does not come back
 _SANE: Final = {"adam": (2e-3, 3e-4), "momentum": (1e-4, 1e-4), "sgd": (1e-3, 1e-3)}  # RATES, by the optimizer
 _TARGET_STEPS: Final = 8_000  # gradient steps after which a target should be nearly where the network is
-_RISES: Final = 0.05  # gain of the share that lands, from which a run is on its way back
 
 
 class HintRule(NamedTuple):
@@ -39,13 +38,6 @@ class HintRule(NamedTuple):
 # Conditions
 
 
-def _damaged(run: RecentCurves) -> bool:
-    """Whether steps were far too long at some time, and the network still shows the damage."""
-    if run.damaged_at() is None or run.last("success_rate") > 0.5:
-        return False
-    return any(sign(run) for sign in (loss_explodes, values_run_away, _collapsed, _crashes, _hovers))
-
-
 def _target_stands(run: RecentCurves) -> bool:
     """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
     config = run.config
@@ -53,19 +45,8 @@ def _target_stands(run: RecentCurves) -> bool:
     return in_use and config.target_update_interval / config.tau > _TARGET_STEPS
 
 
-def _collapsed(run: RecentCurves) -> bool:
-    """Whether the last hundreds of flights landed far less than the best, none of them flown before a change."""
-    best = run.best()
-    lost = best >= 0.6 and bool(run.by_hundreds()[-COLLAPSE:].max() <= best - 0.4)
-    return lost and run.since_change() >= 100 * COLLAPSE and run.gained("success_rate") <= _RISES
-
-
 def _crashes(run: RecentCurves) -> bool:
     return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("success_rate") <= 0.1
-
-
-def _hovers(run: RecentCurves) -> bool:
-    return run.is_late() and run.last("timed_out") >= 0.5 and run.last("success_rate") <= 0.3
 
 
 def _small_memory(run: RecentCurves) -> bool:
@@ -87,7 +68,14 @@ def _sane_rates(run: RecentCurves) -> Mapping[str, Any]:
 
 
 def _before_damage(run: RecentCurves) -> int | None:
-    checkpoint = run.history.checkpoint_at(run.damaged_at() or 0)
+    """Return the moment before a rate was last turned too high, or the beginning."""
+
+    def too_high(rate: object) -> bool:
+        return isinstance(rate, float) and rate > TOO_HIGH[run.config.optimizer]
+
+    changes = (each for each in run.history.setting_changes if each.name in RATES)
+    turned = [each.decisions for each in changes if too_high(each.after) and not too_high(each.before)]
+    checkpoint = run.history.checkpoint_at(turned[-1] if turned else 0)
     return checkpoint.decisions if checkpoint else None
 
 
@@ -115,9 +103,8 @@ def _less_random(run: RecentCurves) -> Mapping[str, Any]:
     config = run.config
     if config.epsilon_end > 0.2:
         return {"epsilon_end": 0.05}
-    if config.epsilon_decay == 1.0 and not config.epsilon_decisions:
-        return {"epsilon_decisions": 40_000}
-    return {"epsilon_decisions": 40_000} if config.epsilon_decisions else {"epsilon_decay": 0.995}
+    by_flights = config.epsilon_decay < 1.0 and not config.epsilon_decisions
+    return {"epsilon_decay": 0.995} if by_flights else {"epsilon_decisions": 40_000}
 
 
 def _more_memory(run: RecentCurves) -> Mapping[str, Any]:
@@ -139,7 +126,6 @@ def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
 RULES: Final = (
     HintRule("rate_too_high", lambda run: rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
              _before_damage, of_settings=True),
-    HintRule("damaged", _damaged, back_to=_before_damage),
     HintRule("changed", lambda run: bool(_as_before(run)), _as_before, _before("reward_weights.")),
     HintRule("target_stands", _target_stands, _nearer_target, of_settings=True),
     HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, _for_crashes),  # "still": never landed

@@ -12,7 +12,7 @@ from ai.lander.environment import LanderEnv
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, REVERTED, Checkpoint, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import DIVERGED, FirstLanding, NetworkState, SwarmState
+from ai.training.messages import DIVERGED, NetworkState, SwarmState
 from ai.training.session import Session
 from ai.training.tasks import Score
 
@@ -39,7 +39,6 @@ class LanderSession(Session[Training]):
         self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
-        self._new = not training.agent.decisions
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
 
@@ -68,7 +67,6 @@ class LanderSession(Session[Training]):
         if progress.decisions >= self._checkpoint_at:
             self.record(self._checkpoint(self.training.statistics.success))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
-        self._explanations.keep()
 
     def _tell_validation(self, score: Score | None) -> None:
         """Tell what came of validation flights, if they are over."""
@@ -84,9 +82,7 @@ class LanderSession(Session[Training]):
 
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = self._swarm_state_now()
-        slot = self._explanations.follow(self.env.actions, result)
-        if slot is not None and self._new:
-            self.messages.append(FirstLanding(slot, self.training.agent.decisions))
+        self._explanations.follow(self.env.actions, result)
 
     def _swarm_state_now(self) -> SwarmState:
         env, training = self.env, self.training
@@ -114,9 +110,9 @@ class LanderSession(Session[Training]):
         self._tell_validation(self.training.validate())
         super().save(folder)
 
-    def _explain(self, slot: int, decisions: int | None = None) -> None:
-        """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
-        self.messages.append(self._explanations.explain(slot, decisions))
+    def _explain(self, slot: int) -> None:
+        """Explain the learning step of a lander's latest memory."""
+        self.messages.append(self._explanations.explain(slot))
 
     def _restore(self, decisions: int) -> None:
         """Restore the networks from the history's checkpoint of a moment; time does not go back."""

@@ -56,14 +56,6 @@ class NetworkState:
 
 
 @dataclass(frozen=True)
-class FirstLanding:
-    """The first landing of a new run from which its network can learn; a lesson of that moment can be asked for."""
-
-    slot: int  # of the lander
-    decisions: int
-
-
-@dataclass(frozen=True)
 class Saved:
     """Result of a save; no problem means that it is on the disk, whole."""
 

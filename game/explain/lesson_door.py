@@ -20,20 +20,19 @@ class LessonDoor:
     def __init__(self, run: TrainingRun, note: Callable[[str], object], rng: np.random.Generator) -> None:
         self._run, self._note, self._rng = run, note, rng
         self._shown = run.lesson
-        self._moment: int | None = None  # of the lesson that was asked for last
         self._asked, self._waited = False, 0  # whether one was asked for, and how many frames ago
 
-    def ask(self, slot: int, moment: int | None = None) -> None:
-        """Ask for the lesson of a lander, at a moment of the run."""
+    def ask(self, slot: int) -> None:
+        """Ask for the lesson of a lander."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return
-        self._shown, self._asked, self._waited, self._moment = self._run.lesson, True, 0, moment
-        self._run.ask("explain", slot, moment)
+        self._shown, self._asked, self._waited = self._run.lesson, True, 0
+        self._run.ask("explain", slot)
 
     def ask_another(self) -> None:
-        """Ask for the lesson of any lander, at the same moment."""
-        self.ask(int(self._rng.integers(self._run.config.num_envs)), self._moment)
+        """Ask for the lesson of any lander."""
+        self.ask(int(self._rng.integers(self._run.config.num_envs)))
 
     def forget(self) -> None:
         """Wait for a lesson no longer."""

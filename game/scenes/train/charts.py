@@ -13,9 +13,6 @@ import pygame
 
 from ai.agent.decision import in_points
 from ai.environment import Doubles
-from ai.training.captions import Caption, caption
-from ai.training.config import Config
-from ai.training.curves import RecentCurves
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.loop import PARTS
 from game.core import texts
@@ -28,7 +25,6 @@ from game.ui.charts import Charts
 from game.ui.plotting import Limits
 
 SCORE: Final = "mean_return"  # the chart of what a flight earns
-STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
 _SHORTEST: Final = 10.0  # seconds that the axis spans at least
 _DASH: Final = (5.0, 4.0)  # of a second curve
 _WIDE: Final = 300.0  # points of a chart with room for one line in a line
@@ -101,34 +97,6 @@ DIGIT_CHARTS: Final = {
         said=_read,
     ),
 }
-
-
-class LandingsCaption:
-    """Caption of the chart of landings, read together with its number.
-
-    Attributes:
-        shown: the caption; None without one.
-
-    """
-
-    def __init__(self) -> None:
-        self.clear()
-
-    def clear(self) -> None:
-        """Reset for another run."""
-        self.shown: Caption | None = None
-        self._since = 0.0
-
-    def read(self, history: History, config: Config, hinted: bool) -> str:
-        """Return the caption beside a hint, or without one; empty where no rule is sure."""
-        now, before = float(history["seconds"][-1]) if len(history) else 0.0, self.shown
-        stays = before.name if before and now - self._since < STAY else ""
-        self.shown = found = caption(RecentCurves(history, config), hinted=hinted, shown=stays)
-        if found is None:
-            return ""
-        if before is None or before.name != found.name:
-            self._since = now
-        return texts.CHART_CAPTIONS[found.name].format(**found.values)
 
 
 class Beside(NamedTuple):

@@ -12,16 +12,16 @@ import numpy as np
 import pygame
 
 from ai.training.config import Config
+from ai.training.curves import caption
 from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Transition, push
-from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, NIGHT0, SMALL
+from game.drawing.tokens import NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.advice import Advice
-from game.scenes.train.charts import LANDER_CHARTS, Beside, LandingsCaption
+from game.scenes.train.charts import LANDER_CHARTS, Beside
 from game.scenes.train.inside import Inside
 from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout, Status
@@ -49,7 +49,6 @@ class LanderView(View):
         laboratory: the experiment that was chosen, and what came of it.
         inside: the network.
         rewind: the moment that is shown.
-        offers: whether there is a first landing to stop at.
 
     """
 
@@ -59,13 +58,12 @@ class LanderView(View):
         super().__init__(scene)
         run = self.run
         self.left = run.collection.rescued() if run.keeps else None
-        self.rewind, self._caption = Rewind(run), LandingsCaption()
+        self.rewind = Rewind(run)
         self.laboratory = Laboratory(run, self._split)
         self.swarms = Swarms(run, self.rewind)
         self.inside = Inside(run, self.rewind)
         self.lessons = LessonDoor(run, self.context.note, self.context.rng)
         self.advice = Advice(run, scene.knobs)
-        self.offers = False
 
     @staticmethod
     def collection(user_dir: Path) -> Library:
@@ -119,8 +117,8 @@ class LanderView(View):
         return Beside(self.laboratory.name, twin.history, in_step=True, paid_otherwise=otherwise)
 
     def caption(self) -> str:
-        run = self.run
-        return self._caption.read(run.history, run.config, bool(self.advice.shown)) if run.alive else ""
+        name = caption(self.run.history) if self.run.alive else ""
+        return texts.CHART_CAPTIONS[name] if name else ""
 
     @property
     def unfinished(self) -> str:  # type: ignore[override]
@@ -142,7 +140,7 @@ class LanderView(View):
     @property
     def key(self) -> Hashable:  # type: ignore[override]
         begun, hint = len(self.run.history) > 0, self.advice.shown
-        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun, self.offers
+        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun
 
     def describe_first(self, column: Column) -> None:
         self.rewind.describe(column)
@@ -174,10 +172,6 @@ class LanderView(View):
         column.choice("", texts.TRAIN_PACES, self.run.pace, self.scene.set_pace, SMALL)
 
     def describe_hint(self, column: Column) -> bool:
-        if self.offers and self.run.first_landing:
-            column.text(texts.LESSON_OFFER.format(slot=self.run.first_landing.slot + 1), size=SMALL, colour=HUMAN)
-            column.words([(texts.LESSON_LOOK, self._look), (texts.LESSON_FLY_ON, self._fly_on)])
-            return True
         if hint := self.advice.shown:
             self.advice.describe(column, hint)
         return hint is not None
@@ -215,7 +209,6 @@ class LanderView(View):
 
     def update(self) -> Transition | None:
         self.advice.update()
-        self._offer()
         if self.fills:
             self.inside.update()
         self.swarms.update(self.context.settings.reduced_motion)
@@ -235,34 +228,17 @@ class LanderView(View):
         return True
 
     def clear(self) -> None:
-        for part in (self.swarms, self.rewind, self._caption, self.inside):
+        for part in (self.swarms, self.rewind, self.inside):
             part.clear()
         self.advice.adviser.reset()
 
     # What can be done
 
-    def _offer(self) -> None:
-        """Offer once in a player's life to stop at a first landing, and look at what is learned from it."""
-        run, settings = self.run, self.context.settings
-        if run.first_landing and not settings.lesson_offered and run.state is WorkerState.RUNNING:
-            self.offers = settings.lesson_offered = True
-            self.context.apply_settings()
-            self.scene.ask(texts.LESSON_LOOK)
-        self.offers &= run.alive
-
-    def _look(self) -> None:
-        """Ask for the lesson of the first landing."""
-        assert self.run.first_landing is not None
-        self.offers = False
-        self.lessons.ask(self.run.first_landing.slot, self.run.first_landing.decisions)
-
-    def _fly_on(self) -> None:
-        self.offers = False
-
     def _ask_why(self) -> None:
-        """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
+        """Ask for the lesson of the chosen lander, or of the one that explores least, as the run is now."""
         chosen = self.swarms.shown.chosen
-        self.lessons.ask(CAREFUL if chosen is None else chosen, self.moment)
+        self.rewind.clear()
+        self.lessons.ask(CAREFUL if chosen is None else chosen)
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

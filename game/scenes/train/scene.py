@@ -346,11 +346,6 @@ class TrainScene(FormScene):
             return None
         return Push(NameDialog(self, texts.NAMING, self._free_name, self.run.save))
 
-    def ask(self, answer: str) -> None:
-        """Lay the panel anew, and put the focus on an answer to what it asks, so that one key gives it."""
-        self._lay()
-        self.form.focus(next(each for each in self.form.widgets if each.label == answer))
-
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES`, for later runs too."""
         self.run.set_pace(index)

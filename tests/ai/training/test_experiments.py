@@ -1,4 +1,6 @@
-"""Sabotages, and what comes of one beside its healthy twin: as recorded of real runs."""
+"""Sabotages, and what comes of one beside its healthy twin."""
+
+from dataclasses import replace
 
 import pytest
 
@@ -6,29 +8,34 @@ from ai.agent.schedule import exploration_of_each
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES, Flown, sabotaged, verdict
 from ai.training.loop import Training
-from tests.support.recordings import recorded
+from tests.support.points import HEALTHY, Curve, history
 
-HEALTHY = recorded("modern healthy")
-
-
-def test_what_came_of_recorded_runs():
-    for name, came in (
-        ("modern healthy, another seed", "as_well"),
-        ("modern sabotage rate_times_100", "never"),
-        ("modern sabotage no_shaping", "later"),
-        ("classic rates 1", "runs_away"),
-    ):
-        run = recorded(name)
-        assert verdict(Flown(HEALTHY.history, HEALTHY.config), Flown(run.history, run.config)) == came, name
+MODERN = PRESETS["modern"]
 
 
-def test_before_its_twin_lands_it_is_too_early_to_say():
-    young, run = recorded("modern healthy", until=60_000), recorded("modern sabotage rate_times_100", until=60_000)
-    flown = Flown(young.history, young.config), Flown(run.history, run.config)
-    assert verdict(*flown) is None
-    assert verdict(*flown, failed=True) == "runs_away"
-    slow = recorded("modern healthy, another seed", until=20_000)
-    assert verdict(Flown(HEALTHY.history, HEALTHY.config), Flown(slow.history, slow.config)) is None
+def landing(when: float, **values: float) -> Curve:
+    """A run that lands nearly always after a share of it."""
+    return lambda share: replace(HEALTHY, success_rate=0.97 if share >= when else 0.1, **values)
+
+
+def came(curve: Curve, decisions: float = 400_000, **options: bool) -> str | None:
+    healthy, other = history(landing(0.2)), history(curve, decisions=decisions)
+    return verdict(Flown(healthy, MODERN), Flown(other, MODERN), **options)
+
+
+def test_what_came_of_an_experiment_follows_from_both_curves():
+    assert came(landing(0.22)) == "as_well"
+    assert came(landing(0.6)) == "later"
+    assert came(landing(2.0)) == "never"
+    assert came(landing(0.2, mean_q=30.0)) == "runs_away"
+    assert came(landing(0.2, loss=float("inf"))) == "runs_away"
+
+
+def test_before_twice_the_time_its_twin_took_it_is_too_early_to_say():
+    assert came(landing(0.2), 150_000) is None
+    assert came(landing(0.2), 150_000, failed=True) == "runs_away"
+    young = Flown(history(landing(2.0)), MODERN)
+    assert verdict(young, young) is None, "its twin does not land either"
 
 
 def test_each_is_a_configuration_that_learns(subtests: pytest.Subtests):

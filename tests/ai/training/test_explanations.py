@@ -1,17 +1,14 @@
 """Explanations of a live run: the memory is the one that the run stores, and the run goes on as if nobody had asked."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from ai.explain.agent_lesson import Lesson
-from ai.lander.environment import Outcome
-from ai.training import explanations
 from ai.training.config import PRESETS
 from ai.training.lander_session import LanderSession
-from ai.training.messages import FirstLanding, NetworkState, Refused
+from ai.training.messages import NetworkState, Refused
 
 CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
                  hidden=(16,), replay_size=5000, spawn="near")  # fmt: skip
@@ -22,8 +19,8 @@ def run(config=CONFIG, **options):
     return LanderSession.live(config, 7, clock=lambda: next(ticks) / 100, **options)
 
 
-def ask(session, slot, decisions=None):
-    (answer,) = session.send(("explain", slot, decisions))
+def ask(session, slot):
+    (answer,) = session.send(("explain", slot))
     return answer
 
 
@@ -59,36 +56,10 @@ def test_a_run_that_is_asked_goes_on_as_one_that_is_not():
             states += [each.values for each in next(session) if isinstance(each, NetworkState)]
             if asked and turn % 20 == 19:
                 ask(session, turn % 6)
-                ask(session, turn % 6, turn * 3)
         return states
 
     for one, other in zip(networks(True), networks(False), strict=False):
         np.testing.assert_array_equal(one, other)
-
-
-def test_a_moment_in_the_past_has_the_network_of_that_time(monkeypatch):
-    monkeypatch.setattr(explanations, "_MOST_KEPT", 6)  # so that they are thinned soon
-    session = run()
-    for _ in range(300):
-        next(session)
-    now, early, middle = ask(session, 0), ask(session, 0, 600), ask(session, 0, 1_200)
-    assert early.decisions < middle.decisions < now.decisions
-    assert abs(early.decisions - 600) <= 200
-    assert abs(middle.decisions - 1_200) <= 200
-    assert not np.array_equal(early.step.values_before, middle.step.values_before)
-
-
-def test_the_first_landing_to_learn_from_is_told_once_and_can_be_explained_much_later(monkeypatch):
-    monkeypatch.setattr(explanations, "_MOST_KEPT", 4)
-    # So small a run lands too seldom: what it does when it crashes stands for a landing.
-    monkeypatch.setattr(explanations, "Outcome", SimpleNamespace(LANDED=Outcome.CRASHED))
-    session, told = run(), []
-    for _ in range(300):
-        told += [each for each in next(session) if isinstance(each, FirstLanding)]
-    (landing,) = told
-    lesson = ask(session, landing.slot, landing.decisions)
-    assert lesson.flown.outcome == Outcome.CRASHED
-    assert lesson.decisions == landing.decisions
 
 
 def test_what_cannot_be_explained_is_refused_and_the_run_is_not_lost():

@@ -1,6 +1,5 @@
 """Made-up histories that do and do not set off each rule; runs as they were measured are in the comments."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
 from typing import Any
@@ -9,38 +8,19 @@ import numpy as np
 import pytest
 
 from ai.training.config import PRESETS, Config
-from ai.training.curves import RecentCurves, loss_explodes, returns, values_run_away
+from ai.training.curves import RecentCurves, caption, loss_explodes, returns, values_run_away
 from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint
 from ai.training.history import Checkpoint, History, SettingChange
-from ai.training.loop import Progress, Training
-from tests.support.points import point, point_of
+from ai.training.loop import Training
+from tests.support.points import HEALTHY, Curve, history, later, point_of
 
 MODERN = PRESETS["modern"]
 NAN = float("nan")
-HEALTHY = point(success_rate=0.97, mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05, crashed=0.02, timed_out=0.01)
-Curve = Callable[[float], Progress]  # of the share of the run that is over
-
-
-def history(curve: Curve, points: int = 400, decisions: float = 400_000, seconds: float = 40.0) -> History:
-    made = History()
-    for number in range(1, points + 1):
-        share = number / points
-        made.append(
-            replace(
-                curve(share), seconds=share * seconds, decisions=share * decisions, episodes=share * decisions / 150
-            )
-        )
-    return made
 
 
 def points(**values: Any) -> Curve:
     return lambda _: replace(HEALTHY, **values)
-
-
-def later(when: float, **values: Any) -> Curve:
-    """Healthy until a share of the run is over."""
-    return lambda share: replace(HEALTHY, **values) if share > when else HEALTHY
 
 
 def holding(curve: Curve, config: Config = MODERN, **options: Any) -> set[str]:
@@ -113,16 +93,6 @@ def test_no_number_stops_a_rule():
         holding(points(**{column: NAN}), points=1)
 
 
-def test_no_value_that_a_file_holds_of_a_rate_stops_a_rule(subtests: pytest.Subtests):
-    for before in [None, "x", -1, 1e9, True, [1], {"a": 1}]:
-        with subtests.test(before=before):
-            run, config = history(points()), MODERN.changed(schedule_decisions=600_000)
-            run.append(SettingChange(200_000, "learning_rate", before, 1e-3))
-            assert RecentCurves(run, config).damaged_at() is None
-            run.append(SettingChange(300_000, "learning_rate", 1.0, 1e-3))
-            assert RecentCurves(run, config).damaged_at() == 0, "before that, it may have been so from the start"
-
-
 def test_what_a_flight_can_pay_follows_the_weights():
     least, most = returns(MODERN)
     assert least < -4.0  # hovering for the whole time, and a crash
@@ -170,6 +140,23 @@ def test_what_stays_of_a_change_leads_back_to_before_it_and_what_was_undone_is_n
     assert RecentCurves(run, MODERN).blamed() == []
 
 
+def test_a_rate_that_was_turned_too_high_leads_back_to_before_that():
+    run, config = history(points(**CRASHES)), MODERN.changed(learning_rate=1.0, final_learning_rate=1.0)
+    rule = RULES[0]
+    assert rule.name == "rate_too_high"
+    for decisions in (0, 180_000, 380_000):
+        run.append(Checkpoint(0.0, decisions, 0.5, np.zeros(3, dtype=np.float32)))
+    assert rule.back_to(RecentCurves(run, config)) == 0, "it was so from the start"
+    for decisions, before, after in (
+        (200_000, 2e-3, 1.0),
+        (390_000, 1.0, 0.5),
+        (395_000, "x", 1.0),
+        (396_000, 0.5, "x"),
+    ):
+        run.append(SettingChange(decisions, "learning_rate", before, after))
+        assert rule.back_to(RecentCurves(run, config)) == (380_000 if before == "x" or after == "x" else 180_000)
+
+
 # The adviser
 
 
@@ -213,13 +200,14 @@ def test_the_most_severe_comes_first():
     assert names(watch(Adviser(), both))[-1] == "crashes"
 
 
-def test_a_dismissed_hint_does_not_come_back_at_once():
+def test_a_hint_that_was_answered_does_not_come_back_at_once():
     config = MODERN.changed(epsilon_end=0.6)
-    adviser, run = Adviser(), history(points(epsilon=0.6), seconds=40.0 + REST)
-    growing, moments = History(), []
+    run = history(points(epsilon=0.6), seconds=40.0 + REST)
+    adviser, growing, moments = Adviser(), History(), []
     for row in run.points:
         growing.append(point_of(row))
-        if adviser.advise(growing, config):
+        if hint := adviser.advise(growing, config):
+            assert hint.remedy == {"epsilon_end": 0.05}
             moments.append(float(row[0]))
             adviser.dismiss()
     assert len(moments) == 2
@@ -247,6 +235,22 @@ def test_another_run_begins_without_the_past():
     assert adviser.shown
     assert adviser.advise(history(points(), points=3, seconds=0.3), MODERN) is None
     assert adviser.advise(History(), MODERN) is None
+
+
+# The caption of the chart of landings
+
+
+def test_a_caption_says_why_none_lands_and_is_silent_where_some_do():
+    for values, name in (
+        ({"success_rate": NAN}, "unknown"),
+        ({"success_rate": 0.0, "crashed": 0.9, "timed_out": 0.1}, "crashes"),
+        ({"success_rate": 0.0, "crashed": 0.2, "timed_out": 0.8}, "hovers"),
+        ({"success_rate": 0.0, "crashed": 0.2, "timed_out": 0.0, "out_of_bounds": 0.8}, "leaves"),
+        ({"success_rate": 0.0, "crashed": 0.4, "timed_out": 0.2, "out_of_bounds": 0.4}, "none"),
+        ({"success_rate": 0.01}, ""),
+    ):
+        assert caption(history(points(**values))) == name
+    assert caption(History()) == ""
 
 
 # A real run, a short one

@@ -6,7 +6,6 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
-from game.ui.charts import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.small import LANDERS, learn, pause, toggle
@@ -35,6 +34,9 @@ def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 0
     assert train.top.lesson.decisions == scene.run.swarm_state.decisions
+    before = train.top.lesson
+    train.press_on(texts.LESSON_ANOTHER)
+    train.wait(lambda: train.top.lesson is not before)
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
@@ -74,29 +76,6 @@ def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_al
     train.key(pygame.K_RETURN)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 3
-
-
-def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train: Driver) -> None:
-    toggle(train)
-    scene = train.top
-    train.wait(lambda: len(scene.run.history.checkpoints) >= 2)
-    toggle(train)
-    train.wait(lambda: scene.run.state is WorkerState.PAUSED)
-    train.frames(30)
-    scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
-    train.keys(*[pygame.K_LEFT] * 4)
-    moment, now = scene.view.rewind.moment, scene.run.swarm_state.decisions
-    assert moment is not None
-    train.press_on(texts.LESSON_WHY)
-    train.wait(lambda: isinstance(train.top, LessonScene))
-    assert abs(train.top.lesson.decisions - moment) < abs(train.top.lesson.decisions - now)
-    train.frames(3)
-    train.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
-    assert scene.view.rewind.moment is None
-    train.frames(3)
-    train.press_on(texts.LESSON_WHY)
-    train.wait(lambda: isinstance(train.top, LessonScene))
-    assert train.top.lesson.decisions == scene.run.swarm_state.decisions
 
 
 def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:

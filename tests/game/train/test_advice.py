@@ -14,7 +14,7 @@ from game.scenes.train.advice import Advice
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.panel import Column
-from tests.ai.training.test_hints import HEALTHY
+from tests.support.points import HEALTHY
 
 
 def test_every_hint_has_words() -> None:

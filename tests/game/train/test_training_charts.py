@@ -11,8 +11,7 @@ from ai.training.history import COLUMNS, DIGIT_COLUMNS, History, SettingChange, 
 from ai.training.loop import PARTS
 from game.core import texts
 from game.scenes.train.charts import DIGIT_CHARTS, LANDER_CHARTS, Beside, TrainingCharts, ticks_of
-from tests.ai.training.test_hints import HEALTHY
-from tests.support.points import point
+from tests.support.points import HEALTHY, point
 
 NUMBERS = list(COLUMNS[: -len(PARTS)])
 
