@@ -211,15 +211,9 @@ class Bindings:
             return left
         return left or tuple(each for each in self.table[meaning] if each != code and self.may(loser, each))
 
-    def reset(self, meaning: Meaning | None = None) -> None:
-        """Restore the defaults of one meaning, or of all.
-
-        Other meanings lose those keys; one that would be left without any gets its defaults back, too.
-        """
-        if meaning is None:
-            self.table = dict(self.device.standard)
-        else:
-            self._restore([meaning])
+    def reset(self) -> None:
+        """Restore the defaults."""
+        self.table = dict(self.device.standard)
         self._index()
 
     def _restore(self, meanings: list[Meaning]) -> None:

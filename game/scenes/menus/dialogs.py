@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import pygame
@@ -18,7 +19,6 @@ from game.ui.panel_scene import PanelScene, StillPicture
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
     from game.ui.panel import Panel
-    from game.ui.widget import OnPress
 
 _MARGIN: Final = 32.0
 _FOOT: Final = 30.0  # of the box, for the hints: nothing of the scene below shows behind them
@@ -83,7 +83,11 @@ class QuestionDialog(Dialog):
         super().__init__(below, question, more)
 
     def add_answers(self, panel: Panel) -> None:
-        panel.words([(label, _closing(answer)) for label, answer in self._answers])
+        panel.words([(label, partial(self._close, answer)) for label, answer in self._answers])
+
+    def _close(self, answer: Callable[[], None]) -> Transition:
+        answer()
+        return Pop()
 
 
 class NameDialog(Dialog):
@@ -112,11 +116,3 @@ class NameDialog(Dialog):
         self.form.focus(self._entry)
         self._entry.begin()
         return None
-
-
-def _closing(answer: OnPress) -> Callable[[], Transition]:
-    def press() -> Transition:
-        answer()
-        return Pop()
-
-    return press

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from game.ui.context import Context
     from game.ui.panel import Panel
 
-# What flies; everything else is in the other half of the table.
+# What flies comes first in the table.
 FLYING: Final[tuple[Meaning, ...]] = (Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER)
 _LEAST: Final = 108.0  # points of a column
 _BETWEEN: Final = "  ·  "
@@ -53,17 +53,12 @@ class BindingCell(RowWidget):
         self.stop()
         self._on_change("")
 
-    def reset(self) -> None:
-        self._change(lambda: self._bindings.reset(self._meaning))
-
     def take(self, event: pygame.event.Event) -> bool:
         """Bind the next key or button; events of the other device are ignored."""
         key = self._code(event) if event.type == pygame.KEYDOWN else None
         button = event.button if event.type == pygame.CONTROLLERBUTTONDOWN else getattr(event, "trigger", None)
         if not self.typing:
-            if key == pygame.K_DELETE:
-                self.reset()
-            return key == pygame.K_DELETE
+            return False
         if key == pygame.K_ESCAPE or button == pygame.CONTROLLER_BUTTON_START:
             self.cancel()
         elif (code := button if self._for_pads else key) is not None:
@@ -82,21 +77,8 @@ class BindingCell(RowWidget):
             self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
         else:
             self.stop()
-            self._change(lambda: self._bindings.bind(self._meaning, code))
-
-    def _change(self, change: Callable[[], object]) -> None:
-        """Change bindings, and say what each command has now, and all that it has lost."""
-        before = dict(self._bindings.table)
-        change()
-        after, mine = self._bindings.table, self._meaning
-        changed = [mine, *(each for each in after if each is not mine and after[each] != before[each])]
-        self._on_change("  ".join(self._sentence(each, before[each], after[each]) for each in changed))
-
-    def _sentence(self, meaning: Meaning, before: tuple[int, ...], after: tuple[int, ...]) -> str:
-        lost = [self._word(code) for code in before if code not in after]
-        words = texts.BINDINGS_LOST if lost else texts.BINDINGS_HAS
-        keys = texts.BINDINGS_AND.join(map(self._word, after)) or texts.BINDINGS_NONE
-        return words.format(what=texts.BINDINGS[meaning.name], keys=keys, lost=texts.BINDINGS_OR.join(lost))
+            self._bindings.bind(self._meaning, code)
+            self._on_change("")
 
     def _word(self, code: int) -> str:
         return self._controls.gamepad_sign(code) if self._for_pads else self._controls.key_word(self._meaning, code)
@@ -129,7 +111,6 @@ class BindingsScene(PanelScene):
         super().__init__(context)
         self._controls = context.controls
         self.said = ""
-        self._half = 0
         self.build()
         self.form.focus(self.form.widgets[1])  # the first key
 
@@ -137,23 +118,20 @@ class BindingsScene(PanelScene):
         controls = self._controls
         panel.title(texts.BINDINGS_TITLE)
         panel.gap(4)
-        panel.choice("", texts.BINDINGS_HALVES, self._half, self._show, size=18.0)
+        panel.button(texts.BINDINGS_ALL, self._reset_all)
         panel.text(lambda: self.said, size=TEXT, colour=HUMAN)
         panel.gap(4)
         for column, words in zip(
             panel.beside((1.1, 1, 1), _LEAST, 24.0), (" ", texts.KEYS_KEYBOARD, texts.KEYS_PAD), strict=True
         ):
             column.caption(words)
-        for meaning in FLYING if self._half == 0 else [each for each in controls.keys.table if each not in FLYING]:
+        for meaning in (*FLYING, *(each for each in controls.keys.table if each not in FLYING)):
             panel.line()
             name, *cells = panel.beside((1.1, 1, 1), _LEAST, 24.0)
             name.gap(BindingCell.pad)
             name.text(texts.BINDINGS[meaning.name])
             for cell, bindings in zip(cells, (controls.keys, controls.buttons), strict=True):
                 cell.widget(BindingCell(controls, bindings, meaning, self._changed))
-        panel.line()
-        panel.gap(8)
-        panel.button(texts.BINDINGS_ALL, self._reset_all)
 
     def exit(self) -> None:
         self._controls.listening = False
@@ -166,18 +144,13 @@ class BindingsScene(PanelScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Change a binding, or restore it; while a key is awaited, cancel."""
+        """Change a binding; while a key is awaited, cancel."""
         cell = self.form.focused
         if not isinstance(cell, BindingCell):
             return super().actions()
         if self._controls.listening:
             return [Action(Command.PAUSE, cell.cancel, texts.HINT_LEAVE_KEY)]
-        default = Action(Command.RETRY, cell.reset, texts.HINT_AS_IT_WAS)
-        return [self.form.confirms(texts.HINT_CHANGE), default, self.form.goes_back(texts.HINT_BACK)]
-
-    def _show(self, half: int) -> None:
-        self._half = half
-        self.build()
+        return [self.form.confirms(texts.HINT_CHANGE), self.form.goes_back(texts.HINT_BACK)]
 
     def _changed(self, said: str) -> None:
         self.said = said
@@ -188,4 +161,4 @@ class BindingsScene(PanelScene):
     def _reset_all(self) -> None:
         self._controls.keys.reset()
         self._controls.buttons.reset()
-        self._changed(texts.BINDINGS_ALL_RESET)
+        self._changed("")

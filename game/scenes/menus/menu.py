@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from datetime import date, timedelta
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -12,8 +11,7 @@ from game.core import texts
 from game.core.scene import Pop, Quit, Transition, push
 from game.core.settings import TOP_RUNG
 from game.drawing.cursor import LEADING
-from game.drawing.prose import lines
-from game.drawing.tokens import INK, MUTE, SMALL, STEP, TEXT, VIEW_SIZE
+from game.drawing.tokens import INK, MUTE, SMALL, STEP, VIEW_SIZE
 from game.flight.days import Days
 from game.flight.logbook import Records, best_descent, ladder_rung
 from game.input.controls import Command
@@ -31,7 +29,7 @@ if TYPE_CHECKING:
 _WORD, _LEAST = 22.0, 18.0  # size of a word in a high window, and in a low one
 # Size of the title: at most this, and these shares of the window's width and height.
 _TITLE, _ACROSS, _DOWN = 88.0, 0.11, 0.12
-_LINE_ROOM, _LINE_SHARE = 520.0, 0.52  # points of the line, and share of the window, which ends before the Earth
+_LINE_ROOM, _LINES = 380.0, 2  # points of the line, which ends before the Earth, and for how many there is room
 _LOW: Final = 430.0  # points of a window in which nothing is left free
 _ROOMY: Final = 560.0  # points of a window in which all that can be flown is explained
 _PAD, _ABOVE, _BETWEEN = 4.0, 28.0, 20.0  # points around a word, above the title and below the line, in a high one
@@ -98,16 +96,12 @@ class MenuScene(_OverMoon):
         cursor.styled(texts.GAME, size, weight="extralight")
 
     def _write_line(self, cursor: Cursor) -> None:
-        """Write where the word in focus leads to, and leave room for the longest of these lines."""
-        roomy = self._roominess
-        width = min(cursor.width, _LINE_ROOM, (_LINE_SHARE if roomy else 1.0) * self.context.reading().view.width)
-        size = SMALL + (TEXT - SMALL) * roomy
-        sentences = [texts.MENU[name][1] for name in ROWS]
+        """Write where the word in focus leads to; what stands below stays where it is."""
+        line, below = cursor.in_style(SMALL, MUTE), cursor.y + _LINES * LEADING * SMALL
         if self.form.focused:
-            line = replace(cursor, width=width, colour=MUTE, size=size)
-            line.text(sentences[self.form.widgets.index(self.form.focused)])
-        longest = max(len(lines(each, size, cursor.weight, width, cursor.scale)) for each in sentences)
-        cursor.gap(longest * LEADING * size + STEP + _BETWEEN * roomy)
+            line.width = min(cursor.width, _LINE_ROOM)
+            line.text(texts.MENU[ROWS[self.form.widgets.index(self.form.focused)]][1])
+        cursor.y = max(line.y, below) + STEP + _BETWEEN * self._roominess
 
     def _open(self, name: str) -> Transition:
         if name == "quit":
@@ -116,13 +110,9 @@ class MenuScene(_OverMoon):
             return push("flights", self._background)
         return push(name)  # a newcomer's first flight teaches
 
-    def _back(self) -> Transition | None:
-        """Move the focus to Quit; if it is there already, leave the game."""
-        last = self.form.widgets[-1]
-        if self.form.focused is last:
-            return Quit()
-        self.form.focus(last)
-        return None
+    def _back(self) -> None:
+        """Move the focus to Quit."""
+        self.form.focus(self.form.widgets[-1])
 
 
 class FlightsScene(_OverMoon):

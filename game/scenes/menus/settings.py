@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -12,28 +11,21 @@ from game.core.scene import Push, Transition, push
 from game.core.settings import PACES
 from game.core.shelf import reason
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import FAINT, FIGURE, INK, NIGHT1, SMALL, TEXT_SIZES
+from game.drawing.tokens import INK, TEXT_SIZES
 from game.flight.progress import put_away
 from game.input.controls import Command, Held
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
 from game.ui.panel_scene import PanelScene
 from game.ui.rows import percent
-from game.world import lander
 
 if TYPE_CHECKING:
-    import pygame
-
-    from game.drawing.canvas import Canvas
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
-    from game.ui.rows import ToggleRow
 
 GROUPS_OF_SETTINGS: Final = ("picture", "sound", "controls", "flights")
 _VOLUMES: Final = ("master", *GROUPS)
 _LEAST: Final = 380.0  # points of a column
-_SCENE: Final = 190.0  # points of the height of the scene in the player's colours
-_METRE: Final = 26.0  # points in it
 
 
 class SettingsScene(PanelScene):
@@ -53,11 +45,8 @@ class SettingsScene(PanelScene):
         """Name the keys anew, for the player may have changed them."""
         self.build()
 
-    def build(self) -> None:
-        self._switches: dict[str, ToggleRow] = {}
-        super().build()
-
     def describe(self, panel: Panel) -> None:
+        self._keyed = self._by_key
         panel.title(texts.SETTINGS_TITLE)
         panel.gap(8)
         words = [texts.SETTINGS_GROUPS[name] for name in GROUPS_OF_SETTINGS]
@@ -71,12 +60,17 @@ class SettingsScene(PanelScene):
             "controls": self._describe_controls, "flights": self._describe_flights,
         }  # fmt: skip
         groups[self.group](left, right)
+        panel.gap()
 
     def update(self) -> Transition | None:
-        for name in ("full_screen", "muted"):
-            if widget := self._switches.get(name):
-                widget.value = getattr(self.context.settings, name)
+        if self._keyed != self._by_key:
+            self.build()
         return super().update()
+
+    @property
+    def _by_key(self) -> tuple[bool, bool]:
+        """What a key changes here as anywhere."""
+        return self.context.settings.full_screen, self.context.settings.muted
 
     def actions(self) -> Table:
         return [self.form.changes, self.form.goes_back(texts.HINT_BACK)]
@@ -99,7 +93,7 @@ class SettingsScene(PanelScene):
         self._toggles(left, "reduced_motion", "show_hints")
         self._toggles(right, "colour_safe")
         right.gap(6)
-        right.picture(_SCENE, _draw_scene)
+        right.add(_write_colours)
 
     def _describe_sound(self, left: Column, right: Column) -> None:
         self._toggles(left, "muted")
@@ -136,7 +130,7 @@ class SettingsScene(PanelScene):
             if name in keys:
                 aside = aside.format(key=(*self.context.controls.key_names(keys[name]), texts.BINDINGS_NONE)[0])
             value = getattr(self.context.settings, name)
-            self._switches[name] = column.toggle(label, value, partial(self._set, name), aside)
+            column.toggle(label, value, partial(self._set, name), aside)
 
     def _set(self, name: str, value: object) -> None:
         setattr(self.context.settings, name, value)
@@ -164,27 +158,10 @@ class SettingsScene(PanelScene):
         self.context.note(texts.PROGRESS_GONE.format(folder=box))
 
 
-def _draw_scene(canvas: Canvas, box: pygame.FRect) -> None:
-    """Draw a small scene in the player's colours: a lander over its pad, a speed within limits and one beyond them."""
-    good, warn = canvas.palette.good, canvas.palette.warn
-    canvas.rounded(box, 8, NIGHT1, 0.55)
-    ground, middle, half = box.bottom - 34, box.left + 0.76 * box.width, 2.6 * _METRE
-    canvas.line((box.left + 24, ground), (box.right - 24, ground), FAINT)
-    canvas.line((middle - half, ground), (middle + half, ground), INK, 3)
-    for side in (-half, half):
-        canvas.glow((middle + side, ground - 3), 22, good, 0.7)
-        canvas.dot((middle + side, ground - 3), 3, good)
-    place = canvas.pixels((middle - 8, ground - 2.6 * _METRE))
-    canvas.surface.blit(*lander.turned(lander.LANDER, _METRE * canvas.scale, 0.12, place))
-    for number, (figure, share) in enumerate((("0.8", 0.32), ("2.6", 0.9))):
-        within = number == 0
-        column = Cursor(box.left + 28 + number * 0.26 * box.width, box.top + 26, 0.22 * box.width, canvas.scale, canvas)
-        canvas.marker("check" if within else "triangle", (column.left + 5, column.y + 9), 10, good if within else warn)
-        label = replace(column, left=column.left + 16).in_style(SMALL)
-        label.text(texts.SWATCH_GOOD if within else texts.SWATCH_WARN)
-        figures = replace(column, y=label.y).in_style(FIGURE, good if within else warn, "light")
-        figures.text(f"{figure} {texts.SWATCH_UNIT}")
-        canvas.bar((column.left, figures.y + 2, column.width - 20, 3), share, good if within else warn)
+def _write_colours(cursor: Cursor) -> None:
+    """Write a speed within limits and one beyond them in the player's colours."""
+    cursor.pair(texts.SWATCH_GOOD, f"0.8 {texts.SWATCH_UNIT}", cursor.palette.good)
+    cursor.pair(texts.SWATCH_WARN, f"2.6 {texts.SWATCH_UNIT}", cursor.palette.warn)
 
 
 def _loudness(volume: float) -> str:

@@ -98,10 +98,10 @@ def test_a_mouse_button_that_was_let_go_unheard_draws_no_more(open_game: Open):
     for buttons, place in (((1, 0, 0), (x + 60, y + 60)), ((0, 0, 0), (x + 90, y + 200))):
         driver.post(pygame.MOUSEMOTION, pos=driver.to_window(place), rel=(0, 0), buttons=buttons)
         driver.frames(2)
-        ink = pad.ink.sum()
+        ink = pad.ink().sum()
     driver.post(pygame.MOUSEMOTION, pos=driver.to_window((x + 200, y + 30)), rel=(0, 0), buttons=(0, 0, 0))
     driver.frames(2)
-    assert pad.ink.sum() == ink > 0
+    assert pad.ink().sum() == ink > 0
 
 
 # One switch

@@ -72,9 +72,9 @@ def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
     assert game.top_name == "SettingsScene"
 
 
-def test_escape_in_the_menu_asks_twice(game: Driver):
-    assert game.key(pygame.K_ESCAPE)
-    assert not game.key(pygame.K_ESCAPE)
+def test_escape_in_the_menu_leads_to_quit_which_enter_presses(game: Driver):
+    game.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    assert not game.key(pygame.K_RETURN)
 
 
 def test_settings_act_at_once_are_saved_at_once_and_survive(open_game, context: Context):
