@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 _SEEDS: Final = (1, 1000)  # of a trial
 _BUDGET: Final = (1, 10**12)
 # Options of a design, which a study keeps: as they are, and what they are made into.
-_DESIGN: Final = "seeds", "metric", "search", "decisions", "every", "validation", "seed"
-_OF_A_NEW_ONE: Final = (*_DESIGN, "knobs", "space", "preset", "changes", "digits")
+_DESIGN: Final = "seeds", "metric", "decisions", "every", "validation", "seed"
+_OF_A_NEW_ONE: Final = (*_DESIGN, "knobs", "preset", "changes", "digits")
 
 
 def add_commands(commands: Any) -> None:
@@ -29,10 +29,8 @@ def add_commands(commands: Any) -> None:
     add("--resume", action="store_true", help="go on with a study; --trials may ask for more")
     add("--trials", type=int, metavar="N", help="trials in all (default: 64)")
     add("--seeds", type=int, metavar="N", help="runs of each trial, seeds 0 to N-1 (default: 3)")
-    add("--metric", metavar="NAME", help="compare trials by time_to_99 (any share), success, return, mean or accuracy")
+    add("--metric", metavar="NAME", help="compare trials by time_to_99 (any share), success, return or accuracy")
     add("--knobs", metavar="NAMES", help="knobs or groups to search, with commas between (default: learning, a group)")
-    add("--space", type=Path, metavar="FILE", help="knobs to search, with ranges, as JSON")
-    add("--search", choices=("tpe", "random"), help="how settings are proposed (default: tpe, by Optuna)")
     add("--decisions", type=int, metavar="N", help="length of each run (default: 250,000)")
     add("--every", type=int, metavar="N", help="decisions or epochs between two measurements")
     add("--validation", type=int, metavar="N", help="episodes of a measurement, as for train")
@@ -139,22 +137,19 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 def _design(arguments: argparse.Namespace) -> Design:
     """Return the design of a new study; raises ValueError or OSError for what makes no sense."""
     from ai.cli.train import digit_config, lander_config
-    from ai.sweep.design import Design, knob_space, read_space
+    from ai.sweep.design import Design, searched
     from ai.sweep.trial import check_ready
 
     arguments.changes, arguments.epochs = arguments.changes or [], None
     if arguments.digits and (arguments.env or arguments.decisions):
         raise ValueError("--env and --decisions are not for digits: these train for --set epochs=N")
-    if arguments.knobs is not None and arguments.space is not None:
-        raise ValueError("say what to search with --knobs or with --space, not with both")
     names = ("learning" if arguments.knobs is None else arguments.knobs).replace(" ", "").split(",")
     if not all(names):
         raise ValueError(f"--knobs takes names of knobs or groups, with commas between, not {arguments.knobs!r}")
     config: Any = (digit_config if arguments.digits else lander_config)(arguments)
     check_ready(config)
-    space = knob_space(config, names) if arguments.space is None else read_space(config, arguments.space)
-    if arguments.digits and arguments.knobs is None:
-        for name in ("epochs", "held_out"):  # they say how long each trains, and what it is measured with
-            space.pop(name, None)
+    knobs = searched(config, names)
+    if arguments.digits:  # these say how long each trains, and what it is measured with
+        knobs = tuple(name for name in knobs if name not in ("epochs", "held_out"))
     given = {name: getattr(arguments, name) for name in (*_DESIGN, "trials")}
-    return Design.of(config, space, **{name: value for name, value in given.items() if value is not None})
+    return Design.of(config, knobs, **{name: value for name, value in given.items() if value is not None})

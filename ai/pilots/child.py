@@ -120,7 +120,8 @@ def _function(names: dict[str, Any], name: str) -> Callable[..., Any]:
 def actions(given: Any, count: int, name: str) -> Any:
     """Return `count` actions as an array; raises AnswerError for anything but whole numbers from 0 to 5."""
     found = np.asarray(given)
-    if found.dtype.kind not in "iu" or found.size != count or not ((found >= 0) & (found < NUM_ACTIONS)).all():
+    whole = found.dtype.kind in "iu" and found.size == count and not np.ma.is_masked(given)
+    if not whole or not ((found >= 0) & (found < NUM_ACTIONS)).all():
         one = "a whole number" if count == 1 else f"{count} whole numbers"
         raise AnswerError(
             f"{name} must return {one} from 0 to {NUM_ACTIONS - 1}, and returned {brief(repr(given), 60)}"

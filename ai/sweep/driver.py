@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import count
 from typing import Any, Final
 
@@ -19,7 +19,8 @@ from optuna.trial import TrialState, create_trial
 from ray.exceptions import RayError, RayTaskError
 
 from ai.files import brief
-from ai.sweep.design import RANDOM, Dimension
+from ai.files.knobs import Knobs
+from ai.sweep.design import choices_of
 from ai.sweep.study import Study
 from ai.sweep.trial import trained
 
@@ -33,42 +34,42 @@ class Proposals:
 
     def __init__(self, study: Study) -> None:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
-        design = study.design
-        self._space = design.space
-        self._distributions = {name: _distribution(dimension) for name, dimension in design.space.items()}
+        design, config = study.design, study.design.config
+        self._distributions = {name: _distribution(config, name) for name in design.knobs}
         # Another seed each time, or a study that goes on would propose once more what it began with.
         seed = design.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
-        samplers = optuna.samplers
         self._optuna = optuna.create_study(
             direction="minimize" if study.metric.sign == 1 else "maximize",
-            sampler=samplers.RandomSampler(seed)
-            if design.search == RANDOM
-            else samplers.TPESampler(seed=seed, constant_liar=True),  # so that many at once are not the same
+            sampler=optuna.samplers.TPESampler(seed=seed, constant_liar=True),  # so many at once are not the same
         )
         for trial in study.ranked():
-            given = {name: self._given(name, value) for name, value in trial.params.items()}
+            given = {name: json.dumps(value) if self._chosen(name) else value for name, value in trial.params.items()}
             self._optuna.add_trial(create_trial(params=given, distributions=self._distributions, value=trial.value))
 
     def ask(self) -> tuple[int, dict[str, Any]]:
         """Return settings to try, and the number by which Optuna is told of them."""
         asked = self._optuna.ask(self._distributions)
-        drawn = {name: json.loads(each) if self._space[name].choices else each for name, each in asked.params.items()}
-        return asked.number, drawn
+        return asked.number, {
+            name: json.loads(value) if self._chosen(name) else value for name, value in asked.params.items()
+        }
 
     def tell(self, number: int, value: float | None) -> None:
         """Note what came of settings; None for nothing."""
         self._optuna.tell(number, value, state=TrialState.FAIL if value is None else TrialState.COMPLETE)
 
-    def _given(self, name: str, value: Any) -> Any:
-        return json.dumps(value) if self._space[name].choices else value
+    def _chosen(self, name: str) -> bool:
+        """Whether a knob has choices, which Optuna knows as texts."""
+        return isinstance(self._distributions[name], CategoricalDistribution)
 
 
-def _distribution(dimension: Dimension) -> Any:
-    if dimension.choices:
-        return CategoricalDistribution([json.dumps(value) for value in dimension.choices])
-    if dimension.whole:
-        return IntDistribution(int(dimension.low), int(dimension.high), log=dimension.log)
-    return FloatDistribution(dimension.low, dimension.high, log=dimension.log)
+def _distribution(config: Knobs, name: str) -> Any:
+    if choices := choices_of(config, name):
+        return CategoricalDistribution([json.dumps(value) for value in choices])
+    item = next(item for item in fields(config) if item.name == name)
+    low, high, log = (item.metadata[end] for end in ("low", "high", "log"))
+    return (
+        IntDistribution(int(low), int(high), log=log) if item.type == "int" else FloatDistribution(low, high, log=log)
+    )
 
 
 @dataclass

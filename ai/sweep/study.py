@@ -38,7 +38,7 @@ from ai.sweep.design import Design, Measurement, Metric
 STUDIES: Final = "studies"  # folder of all studies, in the user's
 STUDY_FILE: Final = "study.json"
 TRIAL_FILE: Final = "trial.json"
-FORMAT, VERSION = "tranquility study", 4
+FORMAT, VERSION = "tranquility study", 5
 _MOST: Final = 64_000_000  # bytes of a trial's file
 _UNREADABLE: Final = (OSError, ValueError, TypeError, ArithmeticError, RecursionError)
 _BEST: Final = 10  # rows of the table

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Hashable, Sequence
 from functools import partial
 from typing import Final, TypeVar
 
@@ -109,22 +110,6 @@ class Form:
         self.widgets.append(widget)
         return widget
 
-    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Replace some adjacent widgets by others; the focus stays where it was, or near it."""
-        focused = self.focused
-        place = self.widgets.index(old[0]) if old else len(self.widgets)
-        for widget in old:
-            self.widgets.remove(widget)
-            if widget not in new:
-                widget.kill()  # type: ignore[no-untyped-call]
-        self.widgets[place:place] = new
-        for widget in new:
-            widget.join(self.manager)
-        if focused in self.widgets:
-            self.focus(focused)
-        else:
-            self._index = max(0, min(self._index, place + max(0, len(new) - 1), len(self.widgets) - 1))
-
     def focus(self, widget: Widget) -> None:
         self._index = self.widgets.index(widget)
 
@@ -140,19 +125,16 @@ class Form:
         """Return the widget of a key, if there is one."""
         return next((widget for widget in self.widgets if widget.key == key), None)
 
-    def follow(self, before: Form, otherwise: Widget | None = None) -> None:
-        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place.
-
-        `otherwise` has the focus where its key is gone.
-        """
+    def follow(self, before: Form) -> None:
+        """Take the place of a form that was described otherwise: the focus stays on its key, or near its place."""
         self.manager.mouse_position = before.manager.mouse_position
         self._held_steps, self._held_direction = before._held_steps, before._held_direction
         for widget in self.widgets:
             if same := before.find(widget.key):
-                widget.warmth = same.warmth
+                widget.follow(same)
         if before.focused and self.widgets:
             place = min(before.widgets.index(before.focused), len(self.widgets) - 1)
-            self.focus(self.find(before.focused.key) or otherwise or self.widgets[place])
+            self.focus(self.find(before.focused.key) or self.widgets[place])
 
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
         """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
@@ -210,7 +192,6 @@ class Form:
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: hovering, easing, and the repeat of a held direction."""
-        self.manager.update(1 / 60)
         self._repeat()
         self._show_focus()
         for widget in self.widgets:
@@ -285,8 +266,10 @@ class Form:
             widget.ringed = not self._context.controls.mouse_in_use
 
 
-class FormScene(Scene):
+class FormScene(Scene, ABC):
     """Scene with a form, whose keys, hints and clicks on hints all follow one table, `actions`.
+
+    A subclass calls `build` at the end of its constructor, and whenever there are other rows than before.
 
     Attributes:
         form: the widgets.
@@ -298,7 +281,35 @@ class FormScene(Scene):
 
     def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
         super().__init__(context)
+        self._on_back = on_back
         self.form = Form(context, on_back)
+
+    @abstractmethod
+    def add_rows(self) -> None:
+        """Add all rows to the form, in panels that take the place of those before."""
+
+    @abstractmethod
+    def lay_out(self) -> None:
+        """Lay the rows out for the window as it is."""
+
+    def build(self) -> None:
+        """Describe the rows anew; the focus stays where it was, or near it, and so does what is seen."""
+        before, self.form = self.form, Form(self.context, self._on_back)
+        self._described = self.state()
+        self.add_rows()
+        self.form.follow(before)
+        self.lay_out()
+
+    def state(self) -> Hashable:
+        """Return what decides which rows there are; when it changes, they are described anew."""
+        return self.context.settings.opened
+
+    def unfolding(self, part: str) -> tuple[str, OnPress]:
+        """Return the word that opens a part of the screen for this player, or closes it, and what does so."""
+        return texts.MORE[self.context.settings.is_open(part)], partial(self.context.unfold, part)
+
+    def reword(self) -> None:
+        self.build()
 
     @property
     def typing(self) -> bool:  # type: ignore[override]
@@ -324,7 +335,11 @@ class FormScene(Scene):
         self.form.lay_keys(self.hint_rows(canvas), canvas)
 
     def update(self) -> Transition | None:
-        return self.form.update()
+        outcome = self.form.update()
+        if self.state() != self._described and not any(widget.held or widget.typing for widget in self.form.widgets):
+            self.build()
+        self.lay_out()
+        return outcome
 
     def draw_hints(self, canvas: Canvas) -> None:
         for row in self.hint_rows(canvas):

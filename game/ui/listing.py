@@ -12,7 +12,7 @@ import pygame
 from game.drawing.canvas import least
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
-from game.ui.widget import NOWHERE, RowWidget, mix
+from game.ui.widget import NOWHERE, RowWidget, Widget, mix
 
 if TYPE_CHECKING:
     from game.core.scene import Transition
@@ -37,7 +37,6 @@ class ListRow(RowWidget):
         empty: what stands there without rows.
         index: the chosen row.
         around: height of all else in the window, in points; 0 for at most eight rows.
-        first: the row at which the list begins.
         on_choose: called with the number of each newly chosen row.
         columns: distance from the right end to the right end of each cell after the first, in points.
         pitch: of the rows, in points.
@@ -53,19 +52,23 @@ class ListRow(RowWidget):
         *,
         index: int = 0,
         around: float = 0.0,
-        first: int = 0,
         on_choose: Callable[[int], None] = lambda _: None,
         columns: Sequence[float] = (0.0,),
         pitch: float = 32,
         size: float = TEXT,
     ) -> None:
         super().__init__(NOWHERE, "")
+        self.key = "list"
         self._on_choose, self._on_press, self._empty = on_choose, press, empty
         self._columns, self._pitch, self._size = columns, pitch, size
-        self._around, self._most, self.first = around, _ROWS, first
+        self._around, self._most, self.first = around, _ROWS, 0
         self._pressed = -1
         self.rows = list(rows)
         self.index = min(max(index, 0), max(0, len(self.rows) - 1))
+
+    def follow(self, before: Widget) -> None:
+        super().follow(before)
+        self.first = before.first if isinstance(before, ListRow) else 0
 
     def lay(self, cursor: Cursor) -> None:
         before = self.room

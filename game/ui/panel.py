@@ -7,7 +7,7 @@ the room that there is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Concatenate, Final, ParamSpec, TypeVar
@@ -57,12 +57,16 @@ def _adding(kind: Callable[P, W]) -> Callable[Concatenate[Column, P], W]:
 
 
 class Column:
-    """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
+    """Rows that are described one after another; each call adds one, and returns its widget if it has one.
 
-    def __init__(self, form: Form, within: Column | None = None) -> None:
+    Attributes:
+        widgets: all of the panel that the column is a part of.
+
+    """
+
+    def __init__(self, form: Form, widgets: list[Widget]) -> None:
         self.rows: list[Row] = []
-        self._form, self._within = form, within
-        self.widgets: list[Widget] = []
+        self._form, self.widgets = form, widgets
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
@@ -72,23 +76,6 @@ class Column:
     def explain(self, what: str) -> None:
         """Say what the last row is, for whoever asks."""
         self.rows[-1].what = what
-
-    def clear(self) -> None:
-        """Take all rows away with their widgets, which are the last of the form, to describe others."""
-        self._form.replace(self.widgets, ())
-        for widget in self.widgets:
-            for column in self._around:
-                column.widgets.remove(widget)
-        self.widgets.clear()
-        self.rows.clear()
-
-    @property
-    def _around(self) -> Iterator[Column]:
-        """The columns of which this one is a part, the nearest first."""
-        column = self._within
-        while column:
-            yield column
-            column = column._within
 
     # Words and figures
 
@@ -145,8 +132,7 @@ class Column:
         return self._take(widget)
 
     def _take(self, widget: W) -> W:
-        for column in (self, *self._around):
-            column.widgets.append(widget)
+        self.widgets.append(widget)
         return self._form.add(widget)
 
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
@@ -168,7 +154,7 @@ class Column:
 
     def beside(self, shares: Sequence[float], least: float, apart: float = 64.0) -> list[Column]:
         """Add columns side by side, each as wide as its share; below each other where one would lack `least`."""
-        columns = [Column(self._form, self) for _ in shares]
+        columns = [Column(self._form, self.widgets) for _ in shares]
         self.add(lambda cursor: cursor.beside([column.write for column in columns], shares, least, apart))
         return columns
 
@@ -189,6 +175,10 @@ class Column:
 class Panel(Column):
     """Column that knows its room on the screen, and scrolls.
 
+    Args:
+        form: gets its widgets.
+        before: the panel in whose place it comes; what was seen of that stays in sight.
+
     Attributes:
         box: its room, in points.
         height: of all rows, in points.
@@ -196,11 +186,13 @@ class Panel(Column):
 
     """
 
-    def __init__(self, form: Form) -> None:
-        super().__init__(form)
+    def __init__(self, form: Form, before: Panel | None = None) -> None:
+        super().__init__(form, [])
         self.box = pygame.FRect(0, 0, 0, 0)
         self.height = self.scrolled = 0.0
-        self._shown: Widget | None = None  # the widget that was in focus when it was last laid out
+        self._shown = ""  # key of the widget that was in focus when it was last laid out
+        if before:
+            self.box, self.scrolled, self._shown = before.box, before.scrolled, before._shown
 
     @property
     def overflows(self) -> bool:
@@ -211,8 +203,9 @@ class Panel(Column):
         same, self.box = box == self.box, box
         self._measure(scale)
         focused = self._form.focused if self._form.focused in self.widgets else None
-        if focused is not self._shown or not same:
-            self._shown = focused
+        shown = focused.key if focused else ""
+        if shown != self._shown or not same:
+            self._shown = shown
             if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
                 self._reveal(pygame.FRect(focused.box), focused)
                 self._measure(scale)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Final
 
 import pygame
@@ -12,7 +12,7 @@ from game.core.scene import Pop, Scene, Transition
 from game.drawing.sky import NightSky
 from game.drawing.tokens import MARGIN, NIGHT0, VIEW_SIZE
 from game.input.controls import Command, translate
-from game.ui.form import Form, FormScene
+from game.ui.form import FormScene
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel import Panel
 
@@ -28,11 +28,8 @@ _ENDS: Final = 0.07  # of its height, above and below
 _WIDEST: Final = VIEW_SIZE[0] - 2.0 * MARGIN  # points between the margins; a wider window has wider margins
 
 
-class PanelScene(FormScene, ABC):
+class PanelScene(FormScene):
     """Scene with a panel and a row of hints below it.
-
-    A subclass describes its rows in `describe`, and calls `build` at the end of its constructor, and whenever there are
-    other rows than before.
 
     Attributes:
         panel: the rows.
@@ -44,7 +41,6 @@ class PanelScene(FormScene, ABC):
 
     def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
         super().__init__(context, on_back)
-        self._on_back = on_back
         self.panel = Panel(self.form)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
 
@@ -52,19 +48,9 @@ class PanelScene(FormScene, ABC):
     def describe(self, panel: Panel) -> None:
         """Add the rows."""
 
-    def build(self) -> None:
-        """Describe the rows anew; the focus stays where it was, or near it, and so does what is seen."""
-        before, scrolled = self.form, self.panel.scrolled
-        self.form = Form(self.context, self._on_back)
-        self.panel = Panel(self.form)
+    def add_rows(self) -> None:
+        self.panel = Panel(self.form, self.panel)
         self.describe(self.panel)
-        self.form.follow(before)
-        self.lay_out()
-        self.panel.scroll(scrolled)
-        self.lay_out()
-
-    def reword(self) -> None:
-        self.build()
 
     def room(self, canvas: Canvas) -> pygame.FRect:
         """Return the room of the panel, above the hints, in points."""
@@ -97,11 +83,6 @@ class PanelScene(FormScene, ABC):
         elif (command := translate(event)) in (Command.NEXT, Command.PREVIOUS):
             page = self.panel.box.height * 0.8
             self.form.used = self.panel.scroll(page if command is Command.NEXT else -page)
-        return outcome
-
-    def update(self) -> Transition | None:
-        outcome = self.form.update()
-        self.lay_out()
         return outcome
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002

@@ -6,17 +6,15 @@ All arrays; no surfaces. Columns and rows are pixels of the plot, counted from i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 Numbers = npt.NDArray[np.floating[Any]]
-Bools = npt.NDArray[np.bool_]
 Limits = tuple[float, float]
 
-_OUTBURST: Final = 4.0  # times the span of a curve's beginning and end
 _WILD: Final = 300.0  # a range this many times wider than the interquartile range is cut
 _WITHIN: Final = 10.0  # interquartile ranges on either side to which it is cut
 _MOST_LINES: Final = 4
@@ -58,28 +56,15 @@ def round_number(value: float) -> str:
     return f"{value:.6g}".replace("-", "−")
 
 
-def calm(values: Numbers) -> Numbers:
-    """Return values (n,) in the order of time, without an outburst that is over and would flatten all else.
-
-    That is what lies between the first fifth and the last two fifths, if it spans several times as much as those.
-    """
-    ends = np.concatenate([values[: len(values) // 5], values[-2 * len(values) // 5 :]])
-    whole, rest = robust_range(values), robust_range(ends)
-    if whole is None or rest is None or not 0 < _OUTBURST * (rest[1] - rest[0]) < whole[1] - whole[0]:
-        return values
-    return ends
-
-
 def robust_range(values: Numbers) -> Limits | None:
-    """Return the range of the finite values without extreme outliers, or None if there are no values.
+    """Return the range of values without extreme outliers, or None if there are no values.
 
     If a few values have exploded, so that all others would look like one flat line, the range leaves these out.
     """
-    finite = values[np.isfinite(values)]
-    if not len(finite):
+    if not len(values):
         return None
-    low, high = float(finite.min()), float(finite.max())
-    first, third = (float(one) for one in np.quantile(finite, (0.25, 0.75)))
+    low, high = float(values.min()), float(values.max())
+    first, third = (float(one) for one in np.quantile(values, (0.25, 0.75)))
     middle = third - first
     if middle > 0 and high / _WILD - low / _WILD > middle:
         return max(low, first - _WITHIN * middle), min(high, third + _WITHIN * middle)
@@ -101,78 +86,29 @@ def grid(low: float, high: float) -> Numbers:
     return np.arange(first, last + 1) * step
 
 
-def decades(low: float, high: float) -> Numbers:
-    """Return the grid lines of a logarithmic axis, as logarithms: round numbers around low to high, tens between."""
-    low, high = max(low, -300.0), min(max(high, low + 1e-9), 300.0)
-    first = max(step for step in _round_logarithms(low) if step <= low + _ROUNDING)
-    last = min(step for step in _round_logarithms(high) if step >= high - _ROUNDING and step > first + _ROUNDING)
-    tens = np.arange(math.ceil(first + _ROUNDING), last - _ROUNDING)
-    return np.array([first, *tens, last])
-
-
-def _round_logarithms(near: float) -> Numbers:
-    """Return the logarithms of 1, 2, 5 and 10 times the power of ten below `near`, itself a logarithm."""
-    return math.floor(near + _ROUNDING) + np.log10((1.0, 2.0, 5.0, 10.0))
-
-
-def steady_grid(span: Limits, before: Numbers | None, make: Callable[[float, float], Numbers] = grid) -> Numbers:
+def steady_grid(span: Limits, before: Numbers | None) -> Numbers:
     """Return grid lines for a range; keep the previous ones while the range fits and fills them well."""
-    lines = make(*span)
+    lines = grid(*span)
     if before is None or span[0] < before[0] or span[1] > before[-1]:
         return lines
     return lines if lines[-1] - lines[0] < 0.6 * (before[-1] - before[0]) else before
 
 
-def eased(shown: Limits, goal: Limits, share: float) -> Limits:
-    """Return limits nearer to the goal by a share of the way, or the goal itself if it is very near or very far."""
-    wide, far = goal[1] - goal[0], max(abs(goal[0] - shown[0]), abs(goal[1] - shown[1]))
-    if far < 0.004 * wide or far > 20 * wide:
-        return goal
-    low, high = (old + (new - old) * share for old, new in zip(shown, goal, strict=True))
-    return low, high
-
-
-def thinned(x: Numbers, y: Numbers, x_range: Limits, count: int) -> npt.NDArray[np.intp]:
-    """Return the indices of about `count` points at most: the lowest and the highest of each group of neighbours."""
-    shown = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
-    if len(shown) <= count:
-        return shown
-    neighbours = -(-len(shown) // max(1, count // 2))
-    rows = -(-len(shown) // neighbours)
-    groups = np.pad(y[shown], (0, rows * neighbours - len(shown)), mode="edge").reshape(rows, neighbours)
-    first = np.arange(rows) * neighbours
-    ends = np.stack([first + groups.argmin(axis=1), first + groups.argmax(axis=1)])
-    return np.unique(shown[np.minimum(ends, len(shown) - 1)])
-
-
-def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) -> Numbers:
-    """Return the smoothed value in each pixel column, (columns,); NaN beyond the data and in its gaps.
+def trace(x: Numbers, y: Numbers, end: float, columns: int, radius: int) -> Numbers:
+    """Return the smoothed value in each pixel column, (columns,), of x from 0 to `end`; NaN beyond the data.
 
     A local linear fit over `radius` columns to either side (Fan and Gijbels 1996): unlike an average it does
-    not lag, and it does not bend at the ends. Values between two points lie on the line between them, unless
-    a value that is not finite lies there too.
+    not lag, and it does not bend at the ends. Values between two points lie on the line between them.
     """
-    at = np.rint((x - x_range[0]) * ((columns - 1) / max(x_range[1] - x_range[0], 1e-300)))
-    inside = (at >= 0) & (at < columns)
-    finite = inside & np.isfinite(y)
-    column, values = at[finite].astype(np.intp), y[finite]
+    column = np.rint(x * ((columns - 1) / end)).astype(np.intp)
     count = np.bincount(column, minlength=columns).astype(float)
-    total = np.bincount(column, values, minlength=columns).astype(float)
+    total = np.bincount(column, y, minlength=columns).astype(float)
     filled = np.flatnonzero(count)
     if not len(filled):
         return np.full(columns, np.nan)
     smooth = _local_line(count, total, min(radius, (columns - 1) // 2))[filled]
-    smooth = np.clip(smooth, values.min(), values.max())
-    every = np.arange(columns)
-    line = np.interp(every, filled, smooth, left=np.nan, right=np.nan)
-    gaps = inside & ~finite
-    missing = np.setdiff1d(at[gaps].astype(np.intp), filled) if gaps.any() else gaps[:0]
-    if len(missing):
-        stretch = np.searchsorted(filled, every)
-        broken = np.isin(stretch, np.searchsorted(filled, missing))
-        broken[filled] = False
-        line[broken] = np.nan
-    return line
+    smooth = np.clip(smooth, y.min(), y.max())
+    return np.interp(np.arange(columns), filled, smooth, left=np.nan, right=np.nan)
 
 
 def _local_line(count: Numbers, total: Numbers, radius: int) -> Numbers:
@@ -245,24 +181,3 @@ def specks(columns: Numbers, heights: Numbers, size: tuple[int, int], radius: fl
     inside = (column >= 0) & (column < size[0]) & (row >= 0) & (row < size[1])
     flat = np.bincount((row * size[0] + column)[inside], cover[inside], minlength=size[0] * size[1]).astype(np.float32)
     return np.minimum(flat, 1.0).reshape(size[1], size[0])
-
-
-def alone(values: Numbers) -> list[int]:
-    """Return the indices of finite values without finite neighbours, through which no line runs."""
-    known = np.isfinite(values)
-    lonely = known.copy()
-    lonely[1:] &= ~known[:-1]
-    lonely[:-1] &= ~known[1:]
-    places: list[int] = np.flatnonzero(lonely).tolist()
-    return places
-
-
-def starts(flags: Bools, at: Numbers, spacing: float) -> list[float]:
-    """Return the positions `at` which runs of True begin, leaving out those less than `spacing` after another."""
-    places: list[float] = []
-    begins = flags.copy()
-    begins[1:] &= ~flags[:-1]
-    for place in at[begins].tolist():
-        if not places or place - places[-1] >= spacing:
-            places.append(place)
-    return places

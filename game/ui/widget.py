@@ -52,14 +52,6 @@ class PointsManager(UIManager):
             self.mouse_position = (int(event.pos[0]), int(event.pos[1]))
         return bool(super().process_events(event))
 
-    def update(self, time_delta: float) -> None:
-        """Advance the elements, for a text line repeats a held key.
-
-        The rest of pygame_gui's update finds the element under the mouse in every frame, which our widgets ask when
-        they need it, and looks after a theme and a mouse cursor that we do not use.
-        """
-        self.ui_group.update(time_delta)
-
 
 class Widget(UIElement):
     """Base widget with a box, a label, a press and the focus.
@@ -153,6 +145,10 @@ class Widget(UIElement):
         """Advance the animation by 1/60 s, or finish it `at_once`."""
         target = float(self.focused)
         self.warmth = target if at_once else self.warmth + (target - self.warmth) * EASE
+
+    def follow(self, before: Widget) -> None:
+        """Take the place of the widget that had its key."""
+        self.warmth = before.warmth
 
     def paint(self, canvas: Canvas) -> None:
         if self.ringed and self.warmth > 0.02:

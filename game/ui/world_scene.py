@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Final
 
 import pygame
 
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop
 from game.drawing.tokens import MARGIN, STEP
-from game.ui.form import Form, FormScene
+from game.ui.form import FormScene
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel import Panel
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Sequence
+    from collections.abc import Sequence
 
     from game.drawing.canvas import Canvas
     from game.ui.context import Context
@@ -30,11 +30,8 @@ _HINTS: Final = 26.0  # points of a line of hints
 _PADS: Final = 26.0  # points above the foot that pads reach down into the ground
 
 
-class WorldScene(FormScene, ABC):
+class WorldScene(FormScene):
     """Scene with rows at its head, at its foot and, if there are any, on a panel at its right side.
-
-    A subclass describes them in `describe`, and calls `build` at the end of its constructor, and whenever there are
-    other rows than before.
 
     Attributes:
         head, side, foot: the rows.
@@ -44,7 +41,6 @@ class WorldScene(FormScene, ABC):
 
     def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
         super().__init__(context, on_back)
-        self._on_back = on_back
         self.head, self.side, self.foot = (Panel(self.form) for _ in range(3))
         self.free = pygame.FRect(context.reading().view)
 
@@ -52,21 +48,9 @@ class WorldScene(FormScene, ABC):
     def describe(self) -> None:
         """Add the rows."""
 
-    def build(self) -> None:
-        """Describe the rows anew; the focus stays where it was, or near it."""
-        before, self.form = self.form, Form(self.context, self._on_back)
-        self.head, self.side, self.foot = (Panel(self.form) for _ in range(3))
-        self._described = self.state()
+    def add_rows(self) -> None:
+        self.head, self.side, self.foot = (Panel(self.form, each) for each in (self.head, self.side, self.foot))
         self.describe()
-        self.form.follow(before)
-        self.lay_out()
-
-    def state(self) -> Hashable:
-        """Return what decides which rows there are; when it changes, they are described anew."""
-        return None
-
-    def reword(self) -> None:
-        self.build()
 
     def lay_out(self) -> None:
         """Lay the rows out for the window: the foot first, then what stands above it."""
@@ -96,13 +80,6 @@ class WorldScene(FormScene, ABC):
         view = canvas.view
         margin = min(MARGIN, _SIDES * view.width)
         return hint_lines(self.hints, canvas, (margin, view.bottom - 2 * STEP), view.width - 2 * margin)
-
-    def update(self) -> Transition | None:
-        outcome = self.form.update()
-        if self.state() != self._described:
-            self.build()
-        self.lay_out()
-        return outcome
 
     def framed(self, canvas: Canvas) -> Canvas:
         """Return the canvas on which the world is drawn: its ground is above the foot."""

@@ -77,7 +77,7 @@ class Driver:
         window.minimised = False
         return goes_on
 
-    def wait(self, until: Callable[[], object], seconds: float = 300.0) -> None:
+    def wait(self, until: Callable[[], object], seconds: float = 60.0) -> None:
         """Play frames until something holds, few of them drawn; the limit is only there so that a failure ends."""
         end = time.monotonic() + seconds
         while not until():

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from ai.sweep.design import Design, Measurement, knob_space
+from ai.sweep.design import Design, Measurement
 from ai.sweep.study import SeedResult, Study, Trial
 from ai.training.config import gym_config
 
@@ -13,9 +13,8 @@ TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16
 def tiny_design(**changes):
     """Return a design of runs of some tenths of a second each."""
     config = gym_config("CartPole-v1").changed(**TINY)
-    space = knob_space(config, ["learning_rate", "tau"]) | knob_space(config, ["double"])
     values = {"decisions": 400, "every": 200, "metric": "return", "seeds": 2, "trials": 4, "validation": 5}
-    return Design.of(config, space, **(values | changes))
+    return Design.of(config, ("learning_rate", "tau", "double"), **(values | changes))
 
 
 def result(number=0, value=1.0, **changes):

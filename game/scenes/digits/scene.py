@@ -126,7 +126,7 @@ class DigitsScene(PanelScene):
             (texts.DIGITS_CLEAR, self.pad.clear),
             (texts.INSIDE_TITLE, self._look_inside),
             (texts.DIGITS_TRAIN, partial(push, "digit_training")),
-            (texts.MORE[self._more], self._open_more),
+            self.unfolding(_MORE),
         ])  # fmt: skip
         answer, why = right.beside((22, 33), least=_ANSWER, apart=24.0)
         answer.add(self._write_answer)
@@ -135,7 +135,7 @@ class DigitsScene(PanelScene):
         if self.chosen in self.fixing.networks and self.fixing.networks[self.chosen].fixed():
             answer.button(texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL)
         why.add(self._write_why)
-        if self._more:
+        if self.context.settings.is_open(_MORE):
             self._describe_more(why)
 
     def _describe_more(self, column: Column) -> None:
@@ -146,14 +146,6 @@ class DigitsScene(PanelScene):
         column.gap()
         column.caption(texts.DIGITS_SEES)
         column.picture(_TILE, self._draw_stages)
-
-    @property
-    def _more(self) -> bool:
-        return self.context.settings.is_open(_MORE)
-
-    def _open_more(self) -> None:
-        self.context.unfold(_MORE)
-        self.build()
 
     def _write_answer(self, cursor: Cursor) -> None:
         if self.chosen in self.reading.probabilities:

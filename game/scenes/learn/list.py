@@ -17,7 +17,7 @@ from game.scenes.learn.path import FIRST, PATH, Progress
 from game.training.library import Library
 from game.ui.actions import Table
 from game.ui.context import Context
-from game.ui.listing import ListRow, Row
+from game.ui.listing import Row
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.widget import OnPress
@@ -39,7 +39,6 @@ class LearnScene(PanelScene):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._progress = Progress(context.settings)
-        self._list: ListRow | None = None
         self._choose_first()
         self.build()
         self.form.focus(self.form.widgets[1])  # the list
@@ -62,9 +61,9 @@ class LearnScene(PanelScene):
         panel.button(texts.ONE_FILE, partial(push, "one_file"), texts.ONE_FILE_ASIDE, colour=INK)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
-        self._list = left.listing(
+        left.listing(
             [self._row(key) for key in PATH], lambda _: self._open(), around=_AROUND, index=_KEYS.index(self.chosen),
-            first=self._list.first if self._list else 0, on_choose=self._choose, pitch=_PITCH,
+            on_choose=self._choose, pitch=_PITCH,
         )  # fmt: skip
         right.text(lambda: texts.LEARN[self.chosen]["question"])
         right.gap(6)

@@ -13,7 +13,6 @@ from game.core.source import Source
 from game.drawing.tokens import TITLE
 from game.explain.code_listing import add_listing, listing_height
 from game.ui.context import Context
-from game.ui.listing import ListRow
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 
@@ -52,7 +51,6 @@ class OneFileScene(PanelScene):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._parts = parts()
-        self._list: ListRow | None = None
         self.chosen = 0
         self.build()
 
@@ -61,9 +59,9 @@ class OneFileScene(PanelScene):
         panel.aside(texts.ONE_FILE_LINE)
         panel.gap(8)
         left, right = panel.beside(_SHARES, _LEAST, _APART)
-        self._list = left.listing(
+        left.listing(
             [(title,) for title in texts.ONE_FILE_PARTS], lambda _: None, around=_AROUND, index=self.chosen,
-            first=self._list.first if self._list else 0, on_choose=self._choose, pitch=_PITCH,
+            on_choose=self._choose, pitch=_PITCH,
         )  # fmt: skip
         right.title(lambda: texts.ONE_FILE_PARTS[self.chosen], TITLE + 4)
         right.aside(lambda: texts.ONE_FILE_GROWN.format(place=self._parts[self.chosen].grown_up))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Hashable
 from pathlib import Path
 from typing import Final
 
@@ -167,12 +166,9 @@ class ReplayScene(WorldScene):
         ]
         if more:
             rows += [ButtonRow(texts.CODE_COPY, self._copy, size=SMALL), self._export_word, self.playback.choice()]
-        rows.append(ButtonRow(texts.MORE[more], lambda: self.context.unfold(_OPEN), size=SMALL))
+        rows.append(ButtonRow(*self.unfolding(_OPEN), size=SMALL))
         rows[-1].key = "more"
         foot.flow(rows)
-
-    def state(self) -> Hashable:
-        return self.context.settings.is_open(_OPEN)
 
     def lay_out(self) -> None:
         super().lay_out()

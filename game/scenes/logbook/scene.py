@@ -54,7 +54,7 @@ class LogbookScene(PanelScene):
         panel.title(texts.LOGBOOK_TITLE)
         if self._records.problem:
             panel.aside(self._records.problem)
-        left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
+        left, right = panel.beside((3, 2), _LEAST, 48.0)
         left.choice("", texts.LOGBOOK_FILTERS, self._filter, self._show, size=SMALL)
         self.items: list[Entry] = self._shown
         index = self.items.index(self.chosen) if self.chosen in self.items else 0
@@ -65,7 +65,7 @@ class LogbookScene(PanelScene):
         )  # fmt: skip
         left.button(texts.CODE_PASTE, partial(paste, self.context))
         self.form.focus(self._list)
-        self._describe_chosen(self._beside)
+        self._describe_chosen(right)
 
     @property
     def _shown(self) -> list[Entry]:
@@ -99,8 +99,7 @@ class LogbookScene(PanelScene):
 
     def _choose(self, number: int) -> None:
         self.chosen = self.items[number] if self.items else None
-        self._beside.clear()
-        self._describe_chosen(self._beside)
+        self.build()
 
     @property
     def _replayable(self) -> bool:

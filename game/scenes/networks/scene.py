@@ -133,7 +133,7 @@ class NetworksScene(PanelScene):
         panel.title(texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE)
         panel.aside(self.line)
         panel.gap(4)
-        left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
+        left, right = panel.beside((3, 2), _LEAST, 48.0)
         left.add(partial(_write_headings, texts.RUNS_COLUMNS, _CELLS))
         rows = [row(run, self._is_shipped(run)) for run in self.items]
         index = self.items.index(self.chosen) if self.chosen else 0
@@ -144,7 +144,7 @@ class NetworksScene(PanelScene):
         left.words([(texts.PILOTS_NEW, self._new), (texts.BACK, Pop)])
         if self.files.said and not isinstance(self.chosen, OwnFile):
             left.text(self.files.said, size=SMALL, colour=HUMAN)
-        self._describe_chosen(self._beside)
+        self._describe_chosen(right)
 
     def _describe_chosen(self, column: Column) -> None:
         """Add the chosen run: its name, its figures, and what can be done with it."""
@@ -203,8 +203,7 @@ class NetworksScene(PanelScene):
 
     def _choose_row(self, number: int) -> None:
         self.chosen = self.items[number]
-        self._beside.clear()
-        self._describe_chosen(self._beside)
+        self.build()
 
     def _press_row(self) -> Transition | None:
         """Choose the network where one is asked for; elsewhere, move the focus to the actions."""

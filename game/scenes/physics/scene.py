@@ -143,23 +143,14 @@ class PhysicsScene(PanelScene):
             column.explain(what["slider"])
         words: list[tuple[str, OnPress]] = [
             (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
-            (texts.MORE[self.more], self._open_more),
+            self.unfolding(_MORE),
         ]
         self._inside, _ = column.words(words)
-        if self.more:
+        if self.context.settings.is_open(_MORE):
             column.gap()
             column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
             column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, self.show_contacts)
             column.explain(what["contacts"])
-
-    @property
-    def more(self) -> bool:
-        """Whether gravity and contacts stand there, too."""
-        return self.context.settings.is_open(_MORE)
-
-    def _open_more(self) -> None:
-        self.context.unfold(_MORE)
-        self.build()
 
     def _said(self) -> str:
         said = texts.EXHIBITS[self.chosen][2].format(**self.exhibit.figures())

@@ -20,7 +20,7 @@ from game.flight.logbook import Records, rank
 from game.scenes.play.card import draw_lamps
 from game.scenes.play.challenge import FlownMission
 from game.ui.actions import Table
-from game.ui.listing import ListRow, Row
+from game.ui.listing import Row
 from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
@@ -41,7 +41,6 @@ class MissionsScene(PanelScene):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._index = 0
-        self._list: ListRow | None = None
         self.enter()
 
     def enter(self) -> None:
@@ -68,7 +67,7 @@ class MissionsScene(PanelScene):
         left, right = panel.beside((5, 4), _LEAST)
         self._list = left.listing(
             [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, pitch=_PITCH,
-            index=self._index, first=self._list.first if self._list else 0, on_choose=self._choose,
+            index=self._index, on_choose=self._choose,
         )  # fmt: skip
         right.title(lambda: texts.MISSIONS[self.chosen][0], 28.0)
         right.text(lambda: texts.MISSIONS[self.chosen][1])
@@ -109,7 +108,6 @@ class MissionsScene(PanelScene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)
-        assert self._list is not None
         for row, name in enumerate(_NAMES):
             y = self._list.baseline(row) - 4
             if name in self._best and self.panel.box.collidepoint(self._list.box.left, y):

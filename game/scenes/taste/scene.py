@@ -70,9 +70,9 @@ class TasteScene(PanelScene):
         panel.gap(6)
         self._row = panel.widget(PairRow(self.pair, self.answer, self._height, lambda: self._waits))
         again, back = (texts.TASTE_AGAIN, self.pair.again), (texts.TASTE_BACK, self._take_back)
-        panel.words([again, back, (texts.MORE[self._opened], self._open)])
+        panel.words([again, back, self.unfolding(_MORE)])
         panel.gap(6)
-        if self._opened:
+        if self.context.settings.is_open(_MORE):
             self._describe_more(panel)
         left, right = panel.beside((1, 1), _LEAST)
         left.add(lambda cursor: cursor.caption(texts.TASTE_NOW.format(count=self._answers)))
@@ -97,14 +97,6 @@ class TasteScene(PanelScene):
     @property
     def _answers(self) -> int:
         return self.run.asked.answers if self.run.asked else 0
-
-    @property
-    def _opened(self) -> bool:
-        return self.context.settings.is_open(_MORE)
-
-    def _open(self) -> None:
-        self.context.unfold(_MORE)
-        self.build()
 
     @property
     def _sentence(self) -> str:

@@ -20,8 +20,9 @@ from game.drawing import prose
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, LABEL, MUTE
 from game.training.run_settings import format_changes
-from game.ui.chart import RUN_STYLES, Chart, Series, Tick
+from game.ui.chart import Chart
 from game.ui.charts import Charts
+from game.ui.curves import BESIDE, Series, Tick
 from game.ui.plotting import Limits
 
 SCORE: Final = "mean_return"  # the chart of what a flight earns
@@ -122,7 +123,7 @@ class TrainingCharts(Charts):
     def __init__(self, kinds: Mapping[str, ChartKind]) -> None:
         self._kinds = kinds
         super().__init__([
-            Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
+            Chart(texts.TRAIN_CHARTS[name], limits=kind.limits, read=partial(_written, kind.form),
                   empty=texts.TRAIN_CHARTS_SHOW[name])
             for name, kind in kinds.items()
         ])  # fmt: skip
@@ -141,7 +142,6 @@ class TrainingCharts(Charts):
             if name == SCORE and beside and beside.paid_otherwise:
                 other, words = None, texts.LAB_PAID_OTHERWISE
             self._set(kind, chart, other, words, alone=beside is None)
-        self.charts[0].renew()  # the title says the same
         self.go_to(moment)
 
     def _set(self, kind: ChartKind, chart: Chart, beside: Beside | None, said: str, *, alone: bool) -> None:
@@ -155,10 +155,10 @@ class TrainingCharts(Charts):
             seconds, values = kind.curve(beside.run)
             if beside.in_step and len(history):
                 seconds = np.interp(beside.run["decisions"], history["decisions"], history["seconds"])
-            series.append(Series(seconds, values, beside.name, *RUN_STYLES[1], kind.smooth))
+            series.append(Series(seconds, values, beside.name, *BESIDE, kind.smooth))
         ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
         ticks = ticks_of(history) if chart is self.charts[0] else ()
-        chart.set(series, (0.0, max([_SHORTEST, *ends])), ticks, said)
+        chart.set(series, max([_SHORTEST, *ends]), ticks, said)
 
     def go_to(self, moment: int | None) -> None:
         """Put the marker at a moment, in decisions; None takes it away."""
@@ -178,7 +178,7 @@ class TrainingCharts(Charts):
     @property
     def latest(self) -> tuple[int | None, ...]:
         """Percent that each run of the first chart has come to; None before there is a number."""
-        return tuple(None if (share := run.last()) is None else round(share) for run in self.charts[0].runs)
+        return tuple(None if run.last is None else round(run.last) for run in self.charts[0].runs)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and what is said of them."""

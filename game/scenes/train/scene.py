@@ -24,8 +24,8 @@ from game.training.run import PACES, TrainingRun
 from game.training.run_settings import RunSettings
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.curves import RUN_STYLES
-from game.ui.form import Form, FormScene
+from game.ui.curves import BESIDE
+from game.ui.form import FormScene
 from game.ui.hints import HintRow
 from game.ui.panel import Column, Panel
 
@@ -61,7 +61,6 @@ class TrainScene(FormScene):
 
     """
 
-    panel: Panel
     _foot: Panel
     start_button: ButtonRow
 
@@ -71,8 +70,8 @@ class TrainScene(FormScene):
         self._settings, self._was_running, self._frame = context.settings, False, 0
         run.pace = 0 if self._settings.slow_runs else len(PACES) - 1
         self._all_knobs = False  # whether the page of knobs is shown
-        self._laid: Hashable = None
         self._page: Hashable = False
+        self.panel = Panel(self.form)
         self._seen: Hashable = None
         self._layout: Layout | None = None
         self.landed: tuple[int | None, ...] = ()
@@ -85,7 +84,7 @@ class TrainScene(FormScene):
             self.knobs = RunSettings(run, view.kind.presets[view.preset])
             self.view = view(self)
             self._look()
-            self._lay()
+            self.build()
             self.form.focus(self.start_button)
             self.lay_out()
         except BaseException:  # nobody closes a scene that could not be built
@@ -101,24 +100,23 @@ class TrainScene(FormScene):
 
     # Rows
 
-    def _lay(self) -> None:
-        """Describe the panel anew; the focus stays on what has the same name."""
-        before, page, self._page = self.form, self._page, self._shown_page
-        scrolled = self.panel.scrolled if self._laid is not None and page == self._page else 0.0
-        self.form = Form(self.context, before.back)
-        self.panel = Panel(self.form)
+    def build(self) -> None:
+        page, self._page = self._page, self._shown_page
+        if page != self._page:
+            self.panel = Panel(self.form)
+        super().build()
+        if page != self._page and self.panel.widgets:  # from its top
+            self.form.focus(self.panel.widgets[0])
+
+    def add_rows(self) -> None:
+        self._layout = None
+        self.panel = Panel(self.form, self.panel)
         self._foot = self.panel if self._low else Panel(self.form)
         self._pointed = self.view.pointers()
         for widget, _ in self._pointed:
             self.form.add(widget)
         self._describe(self.panel)
         self._describe_foot(self._foot)
-        self.form.follow(before, self.start_button)
-        if page != self._page and self.panel.widgets:  # from its top
-            self.form.focus(self.panel.widgets[0])
-        self._laid, self._layout = self._rows_key, None
-        self.lay_out()
-        self.panel.scroll(scrolled)
 
     @property
     def _shown_page(self) -> Hashable:
@@ -135,8 +133,7 @@ class TrainScene(FormScene):
         """Whether there is so little room that all rows scroll, those of the foot too."""
         return self._room.height < _LOW
 
-    @property
-    def _rows_key(self) -> Hashable:
+    def state(self) -> Hashable:
         run = self.run
         return (
             self._settings.opened, self._all_knobs, self.knobs.asked, self.knobs.problem, self.knobs.waits,
@@ -155,7 +152,7 @@ class TrainScene(FormScene):
         else:
             knobs.describe_few(column, view.kind, settings, view.first)
             if self.run.earlier and not self.run.twin:
-                column.text(texts.TRAIN_BESIDE, size=SMALL, colour=RUN_STYLES[1][0])
+                column.text(texts.TRAIN_BESIDE, size=SMALL, colour=BESIDE[0])
             column.gap()
             self.switch(column, MORE, texts.MORE)
             if self._settings.is_open(MORE):
@@ -258,13 +255,8 @@ class TrainScene(FormScene):
         outcome = self.view.update()
         self._frame += 1
         self._look()
-        self.charts.update(at_once=self._settings.reduced_motion)
         self.explained.update()
-        outcome = self.form.update() or outcome
-        if self._rows_key != self._laid and not any(widget.held or widget.typing for widget in self.form.widgets):
-            self._lay()
-        self.lay_out()
-        return outcome
+        return super().update() or outcome
 
     def _listen(self) -> None:
         """Receive the worker's messages; show the run's settings once it tells them."""

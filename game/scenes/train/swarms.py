@@ -12,10 +12,10 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import LINE, MUTE, NIGHT0, SMALL, TEXT
+from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
-from game.ui.curves import RUN_STYLES
+from game.ui.curves import BESIDE
 from game.world.swarm import LearningSwarm
 
 HEAD: Final = 130.0  # points of the box, for the title above two swarms
@@ -114,7 +114,7 @@ class Swarms:
     def _write(self, canvas: Canvas, left: float, number: int, run: TrainingRun, name: str, share: int | None) -> None:
         """Write a run's name and the share that lands below its swarm."""
         width, top = self._halves.width / 2 - 2 * _MARGIN, self._halves.bottom - _SAID + 6
-        colour = RUN_STYLES[number][0]
+        colour = (NET, BESIDE[0])[number]
         cursor = Cursor(left + _MARGIN, top, width, canvas.scale, canvas, size=TEXT, colour=colour)
         cursor.pair(name, "" if share is None else texts.SPLIT_LANDED.format(percent=share))
         if run.state in (WorkerState.FAILED, WorkerState.ENDED):

@@ -151,7 +151,7 @@ class WatchScene(WorldScene):
                 ChoiceRow(texts.WATCH_MAP, texts.KNOB_SWITCH, on, self._choose_map, SMALL),
                 ButtonRow(texts.PAUSE_NEW_STARTS, self._begin_anew, size=SMALL),
             ]
-        widgets.append(ButtonRow(texts.MORE[more], self._open_more, size=SMALL))
+        widgets.append(ButtonRow(*self.unfolding(_OPEN), size=SMALL))
         widgets[-1].key = "more"
         choices = [widget for widget in widgets if isinstance(widget, ChoiceRow)]
         for choice, what in zip(choices, texts.EXPLAIN_CHOICES, strict=False):
@@ -161,7 +161,7 @@ class WatchScene(WorldScene):
         self.hand.label = texts.TOUCH_LANDER
 
     def state(self) -> Hashable:
-        return self.world.can_untouch, self.world.policy_map.on, self.context.settings.is_open(_OPEN)
+        return super().state(), self.world.can_untouch, self.world.policy_map.on
 
     @property
     def sentence(self) -> tuple[str, Colour, Shape]:
@@ -187,9 +187,6 @@ class WatchScene(WorldScene):
     def _write_readouts(self, cursor: Cursor) -> None:
         shown = flight_readouts(self.swarm.env, self.world.shown)
         write_readouts(cursor, {name: shown[name] for name in PILOT})
-
-    def _open_more(self) -> None:
-        self.context.unfold(_OPEN)
 
     # What flies
 

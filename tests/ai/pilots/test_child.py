@@ -19,6 +19,8 @@ def far(o):
 def act(observation):
     return far(observation)
 """
+MASKED = "import numpy as np\ndef act_many(o): return np.ma.array([1, 2, 3], mask=[0, 1, 0])"
+
 # What stands in a file, and what is said of it.
 WRONG = {
     "def act(o)\n    return 0": "1 SyntaxError: expected ':'",
@@ -31,6 +33,8 @@ WRONG = {
     "def act(o): return 2.0": "0 act must return a whole number from 0 to 5, and returned 2.0",
     "def act(o): pass": "0 act must return a whole number from 0 to 5, and returned None",
     "def act(o): yield 0": "0 act must return a whole number from 0 to 5, and returned <generator",
+    "async def act(o): yield 0": "0 act must return a whole number from 0 to 5, and returned <async_generator",
+    MASKED: "0 act_many must return 3 whole numbers from 0 to 5, and returned masked_array(",
     "def act_many(o): return [0, 1]": "0 act_many must return 3 whole numbers from 0 to 5, and returned [0, 1]",
 }
 

@@ -110,7 +110,7 @@ def places(value, path=()):
 
 
 @given(st.data())
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_study_bears_any_value_in_any_place(study, data):
     file = study.folder / data.draw(st.sampled_from(FILES))
     sound = file.read_text()

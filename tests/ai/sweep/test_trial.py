@@ -7,7 +7,7 @@ import pytest
 
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
-from ai.sweep.design import Design, knob_space
+from ai.sweep.design import Design
 from ai.sweep.study import Study
 from ai.sweep.trial import trained
 from ai.training.run import save
@@ -41,7 +41,7 @@ def test_a_trials_run_is_that_of_train_bit_for_bit(tmp_path):
 @pytest.mark.slow
 def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=5000, epochs=1, augmentation=0.0)
-    design = replace(Design.of(config, knob_space(config, ["learning_rate"]), every=1, trials=1), seeds=(3,))
+    design = replace(Design.of(config, ("learning_rate",), every=1, trials=1), seeds=(3,))
     assert design.budget == 1
     study = recorded(tmp_path / "study", design, {"learning_rate": 0.01})
     training = DigitTraining(config.changed(learning_rate=0.01), 3)
@@ -59,14 +59,17 @@ def test_a_trial_of_digits_is_measured_each_epoch(tmp_path, monkeypatch):
         monkeypatch.setattr(f"ai.digits.{module}.load_part", lambda _: part)
     monkeypatch.setattr("ai.sweep.trial.load_part", lambda _: part)
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=50, epochs=2, augmentation=0.0, held_out=100)
-    design = Design.of(config, knob_space(config, ["learning_rate"]), every=1, trials=1, seeds=1)
+    design = Design.of(config, ("learning_rate",), every=1, trials=1, seeds=1)
     study = recorded(tmp_path / "study", design, {"learning_rate": 0.01})
     (seed,) = study.trials[0].seeds
     assert [point.at for point in seed.curve] == [1, 2]
     assert study.trials[0].value == seed.curve[-1].success
-    with_none, _ = trained(replace(design, settings=design.settings | {"held_out": 0}), 0, {"learning_rate": 0.01})
-    assert (with_none.value, with_none.seeds) == (None, ())
-    assert "held_out" in with_none.problem
+
+
+def test_settings_that_make_no_sense_are_a_result():
+    trial, files = trained(tiny_design(), 0, PARAMS | {"replay_prune": 10_000})
+    assert (trial.value, trial.seeds, files) == (None, (), {})
+    assert "replay_prune" in trial.problem
 
 
 def test_settings_that_diverge_are_a_result_and_not_an_error(tmp_path, monkeypatch):

@@ -55,7 +55,7 @@ def test_a_remedy_sets_knobs_and_goes_back(context: Context) -> None:
     assert advice.shown
     assert advice.shown.name == "changed"
     form = Form(context)
-    advice.describe(Column(form), advice.shown)
+    advice.describe(Column(form, []), advice.shown)
     apply, _dismiss = form.widgets
     apply.press()
     assert asked == [("restore", 200_000)]

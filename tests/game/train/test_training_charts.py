@@ -78,7 +78,7 @@ def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> N
 
 def test_a_run_before_is_measured_by_the_same_seconds_and_an_experiment_by_the_same_decisions() -> None:
     for chart in looked(long_run(12.0, 2e5), Beside("long", long_run(367.0, 4e6))).charts:
-        assert chart.x_range == pytest.approx((0.0, 367.0))
+        assert chart.end == pytest.approx(367.0)
         assert chart.runs[0].x[-1] == pytest.approx(12.0)
     quick = long_run(30.0, 1e6)  # it learns in a third of the time, and waits for its twin
     for chart in looked(long_run(90.0, 1e6), Beside("quick", quick, in_step=True)).charts:

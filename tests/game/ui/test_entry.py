@@ -10,10 +10,8 @@ from game.core.scene import Transition
 from game.core.shelf import fitting
 from game.input.bindings import Command
 from game.ui.context import Context
-from game.ui.entry import TextLine
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.widget import PointsManager
 from tests.support.driver import Driver
 
 ROWS = 20
@@ -45,9 +43,6 @@ class Page(PanelScene):
             self.commands += event.unicode
         return outcome
 
-    def place(self, letter: int) -> tuple[float, float]:
-        return self.entry._lefts[letter] + 1, self.entry.box.centery
-
 
 @pytest.fixture
 def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
@@ -63,88 +58,6 @@ def write(game: Driver, text: str) -> None:
         game.post(pygame.KEYDOWN, key=code, mod=0, unicode=letter, scancode=0)
         game.post(pygame.TEXTINPUT, text=letter)
         game.post(pygame.KEYUP, key=code, mod=0, unicode=letter, scancode=0)
-
-
-def line_of(text: str, limit: int = 40, fits: Callable[[str], str] = str) -> TextLine:
-    return TextLine(PointsManager(), text, limit, fits)
-
-
-def press(line: TextLine, *keys: int, mod: int = 0) -> None:
-    for key in keys:
-        line.process_event(pygame.event.Event(pygame.KEYDOWN, key=key, mod=mod))
-
-
-# A line
-
-
-def test_keys_edit_a_line():
-    end, home, left, right = pygame.K_END, pygame.K_HOME, pygame.K_LEFT, pygame.K_RIGHT
-    back, delete, none = pygame.K_BACKSPACE, pygame.K_DELETE, 0
-    shift, control = pygame.KMOD_LSHIFT, pygame.KMOD_LCTRL
-    cases: tuple[tuple[list[Any], str, tuple[int, int]], ...] = (
-        (["x"], "x", (1, 1)),  # the first letter takes the place of a suggestion
-        ([([end], none), "!", ([home, right, delete], none), "oo", ([left, back], none)], "Modern!", (1, 1)),
-        ([([home, left, back, end, right, delete], none)], "Modern", (6, 6)),
-        ([([end], none), ([pygame.K_a], control), ([back], none)], "", (0, 0)),
-        ([([end], none), ([left, left, left, right], shift)], "Modern", (4, 6)),
-        ([([end], none), ([left, left, left, right], shift), "e"], "Modee", (5, 5)),
-        ([([end], none), ([home], shift), ([delete], none)], "", (0, 0)),
-    )
-    for steps, text, selection in cases:
-        line = line_of("Modern")
-        for step in steps:
-            if isinstance(step, str):
-                line.process_event(pygame.event.Event(pygame.TEXTINPUT, text=step))
-            else:
-                press(line, *step[0], mod=step[1])
-        assert (line.text, line.selection) == (text, selection), steps
-
-
-def test_only_what_fits_is_written_and_never_more_than_the_limit():
-    for text, kept in (('a/b\\c:d*e?f<g>h|i"j.k é', "abcdefghij.k é"), ("a\n\tb\x00", "ab")):
-        line = line_of("", fits=fitting)
-        line.insert(text)
-        assert line.text == kept
-    line = line_of("abc", limit=5)
-    line.place(1)
-    line.insert("123456")
-    assert line.text == "a12bc"
-
-
-def test_the_clipboard_is_pasted_copied_and_cut(monkeypatch: pytest.MonkeyPatch):
-    copied: list[str] = []
-    monkeypatch.setattr(pygame.scrap, "get_text", lambda: "run/7\n")
-    monkeypatch.setattr(pygame.scrap, "put_text", copied.append)
-    line = line_of("", fits=fitting)
-    press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
-    assert line.text == "run7"
-    press(line, pygame.K_HOME)
-    press(line, *[pygame.K_RIGHT] * 3, mod=pygame.KMOD_LSHIFT)
-    press(line, pygame.K_c, pygame.K_x, mod=pygame.KMOD_LCTRL)
-    assert (copied, line.text, line.edit_position) == (["run", "run"], "7", 0)
-
-
-def test_a_clipboard_that_is_no_text_changes_nothing(monkeypatch: pytest.MonkeyPatch):
-    def nonsense() -> str:
-        return b"\xff\xfe".decode()
-
-    monkeypatch.setattr(pygame.scrap, "get_text", nonsense)
-    line = line_of("run")
-    press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
-    assert line.text == "run"
-
-
-def test_a_held_key_repeats_until_it_is_let_go():
-    line = line_of("x" * 30)
-    press(line, pygame.K_END, pygame.K_BACKSPACE)
-    for _ in range(60):
-        line.update(1 / 60)
-    left = len(line.text)
-    assert 0 < left < 25
-    line.process_event(pygame.event.Event(pygame.KEYUP, key=pygame.K_BACKSPACE, mod=0))
-    for _ in range(60):
-        line.update(1 / 60)
-    assert len(line.text) == left
 
 
 # An entry
@@ -214,19 +127,47 @@ def test_the_space_that_begins_it_is_not_written_and_nothing_is_not_accepted(pag
     assert scene.entry.text == "  a b"
 
 
-def test_the_mouse_places_the_caret_and_a_nudge_does_not_take_the_focus(page: tuple[Driver, Page]):
+def test_a_click_begins_and_a_nudge_of_the_mouse_does_not_take_the_focus(page: tuple[Driver, Page]):
     game, scene = page
     word = scene.word.box.left + 6, scene.word.box.centery
-    game.click(scene.place(3))
-    assert scene.entry.line.selection == (0, 8)  # all of a suggestion
-    game.click(scene.place(1))
+    game.click(scene.entry.box.center)
     game.move(word)
     write(game, "a")
-    assert scene.entry.text == "Maodern 3"
-    game.post(pygame.KEYDOWN, key=pygame.K_BACKSPACE, mod=0, unicode="", scancode=0)
+    assert scene.entry.text == "a"
     game.click(word)
-    game.frames(60)  # a key that is held as typing ends changes nothing more
-    assert (scene.log, scene.entry.typing, scene.entry.text) == (["saved"], False, "Modern 3")
+    assert (scene.log, scene.entry.typing, scene.entry.text) == (["saved"], False, "a")
+
+
+def test_keys_edit_the_text_at_its_caret_and_never_beyond_its_limit(page: tuple[Driver, Page]):
+    game, scene = page
+    end, home, left, right = pygame.K_END, pygame.K_HOME, pygame.K_LEFT, pygame.K_RIGHT
+    back, delete = pygame.K_BACKSPACE, pygame.K_DELETE
+    for keys, letters, text in (
+        ((delete,), "", ""),
+        ((end, back), "4", "Modern 4"),
+        ((home, back, right, delete, delete), "a", "Maern 3"),
+        ((left, left), "/?e", "Moderne 3"),
+        ((end, right), "abcdefgh", "Modern 3abcd"),
+    ):
+        scene.entry.begin()
+        game.frames(1)
+        game.keys(*keys)
+        write(game, letters)
+        assert scene.entry.text == text
+        game.key(pygame.K_ESCAPE)
+        assert scene.entry.text == "Modern 3"
+
+
+def test_what_is_pasted_is_fitted_and_what_is_no_text_changes_nothing(
+    page: tuple[Driver, Page], monkeypatch: pytest.MonkeyPatch
+):
+    game, scene = page
+    scene.entry.begin()
+    game.frames(1)
+    for clipboard, text in ((b"\xff\xfe", "Modern 3"), (b"run/7\n", "run7")):
+        monkeypatch.setattr(pygame.scrap, "get_text", clipboard.decode)
+        game.post(pygame.KEYDOWN, key=pygame.K_v, mod=pygame.KMOD_LCTRL, unicode="", scancode=0)
+        assert scene.entry.text == text
 
 
 # A listing
