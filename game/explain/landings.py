@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
 from game.core import texts
-from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
 from game.explain.q_values import FIRST, NAME, ROW
@@ -108,10 +106,4 @@ def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, w
         said = texts.LANDINGS[after.value]
         lit = NET if after is Landing.LANDS else colour
         canvas.text(said, (left + width, y + 4), size=SMALL, colour=lit, align="right", room=width - NAME - 20)
-        canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_LANDING, partial(landing_words, landings, action))
-
-
-def landing_words(landings: Landings, action: int) -> str:
-    """Say what comes of an action now."""
-    name, after = capital(texts.said(ACTION_NAMES[action])), landings.after[action]
-    return texts.EXPLAIN_LANDING_NOW[after.value].format(name=name, seconds=f"{landings.seconds:.1f}")
+        canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_LANDING)

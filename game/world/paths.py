@@ -63,7 +63,7 @@ class Trails:
         self._open: list[list[tuple[float, float]]] = [[] for _ in range(count)]
         self._done: deque[_Trail] = deque(maxlen=keep)
         self._keep = keep
-        self._fade = 0.1 ** (1 / keep)
+        self._fade = 0.1 ** (1 / max(1, keep))
         self._stride = stride
         self._step = 0
 

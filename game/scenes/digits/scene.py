@@ -13,7 +13,7 @@ from ai.digits.preprocessing import Image, stages
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import certainty
-from game.digits.pictures import AMBER, Numbers, framed, picture
+from game.digits.pictures import AMBER, Numbers, Picture, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
@@ -50,7 +50,7 @@ class DigitsScene(PanelScene):
         super().__init__(context)
         self.pad = DrawingPad()
         self.live = LiveReading(self.pad, chosen)
-        self._why, self._stages = PaintCache(), PaintCache()
+        self._why, self._stages = Picture(AMBER), PaintCache()
         self._fix_of = -1  # revision of the drawing that was fixed last
         self.fixing = FixRunner(context.user_dir, context.models_dir)
         for name in dict.fromkeys((*NAMES, chosen)):
@@ -100,7 +100,7 @@ class DigitsScene(PanelScene):
         return [
             self.form.goes_back(texts.HINT_BACK),
             Action(pygame.K_z, self.pad.undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
-            *(Action(key, self.pad.clear) for key in (Command.CHOICES, Command.RETRY, pygame.K_DELETE)),
+            Action(Command.RETRY, self.pad.clear),
             *digit_actions(self._correct),
         ]
 
@@ -169,7 +169,7 @@ class DigitsScene(PanelScene):
         size = min(cursor.width, _WHY)
         box = cursor.take(size)
         if self._drawn and cursor.canvas and why is not None:
-            self._why.draw(cursor.canvas, (box.left, box.top, size, size), why.tobytes(), framed(why, AMBER))
+            self._why.draw(cursor.canvas, box, why)
         write_legend(cursor, zip(legend, (HUMAN, MUTE), strict=False))
 
     @property

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
 import pygame
 
 from ai.agent.decision import Decision
-from ai.lander.environment import NUM_ACTIONS
 from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -129,12 +127,5 @@ def landings_of(futures: SixFutures, flight: Flight[Crew]) -> Landings:
 
 def shared_values(decision: SharedDecision, pad: int) -> QValues:
     """Return the Q-values of one lander's shared decision, for one of the pads as the goal."""
-    from ai.copilot.copilot import guardian_margin
-
-    points, asked = decision.points[0, pad], int(decision.pilot[0])
-    feasible, allowed = decision.feasible[0], None
-    if asked != COAST:  # a guardian compares the action asked for with its own only
-        feasible = (np.arange(NUM_ACTIONS) != asked) | feasible
-        allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
-    wish = None if asked == COAST else asked
-    return QValues(tuple(points.tolist()), int(decision.action[0]), wish, tuple(feasible.tolist()), allowed)
+    asked = int(decision.pilot[0])
+    return QValues(tuple(decision.points[0, pad].tolist()), int(decision.action[0]), None if asked == COAST else asked)

@@ -161,9 +161,8 @@ def is_late(decision: SharedDecision) -> bool:
 def why_not_saved(flight: Flight[Crew]) -> str:
     """Say of a helped flight that was lost why it was not saved; empty if that is not known."""
     guard = flight.chooser.guard
-    if guard and guard.bare:
-        since, why = guard.bare
-        return texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
+    if guard and guard.bare is not None:
+        return texts.GUARDIAN_BARE.format(since=f"{guard.bare:.1f}")
     by_values = flight.chooser.copilot and (guard is None or guard.ahead.problem)
     return texts.NOT_SAVED_BY_VALUES if by_values else ""
 

@@ -7,7 +7,7 @@ from ai.lander.push import KEYS
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.explain.landings import Landing, Landings, RecentLandings
-from game.explain.readouts import GAUGES, Readout, at_touch, flight_readouts
+from game.explain.readouts import FELT, Readout, at_touch, flight_readouts
 from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
 from game.scenes.play.copilot_panel import CopilotPanel
@@ -85,7 +85,7 @@ def test_rows_that_are_not_known_anew_stay_for_half_a_second():
 
 # The reason of a crash names what was beyond its limit, and the read-outs mark the same.
 
-FIGURES = {gauge.cause: name for name, gauge in GAUGES.items() if gauge.cause}
+FIGURES = {cause: name for cause, (name, _) in FELT.items()}
 
 
 def dropped(start: tuple[float, ...]) -> tuple[Flight, dict[str, Readout]]:
