@@ -165,7 +165,6 @@ class FlownFlight:
     def animate(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
         self.age += 1
-        self.scenery.animate()
         self.help_words.shown = max(0, self.help_words.shown - 1)
 
     def step(self, asked: Push) -> Happened:

@@ -11,7 +11,7 @@ from ai.environment import Bools, Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
-from game.core.clock import STEP, TimeScale
+from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK
 from game.flight.networks import Policy
@@ -54,7 +54,7 @@ class Watched:
         self.policy_map = PolicyMap()
         self._clock = TimeScale()
         self.playback = Playback(self._clock, SPEEDS, self.fly_to_the_next_decision)
-        self.shown, self._time = 0, 0.0
+        self.shown = 0
         self.free = context.reading().view
 
     def begin(self, many: bool, seed: int, policy: Policy) -> None:
@@ -103,8 +103,6 @@ class Watched:
             self.fly()
         if not self.playback.stopped:
             self._heard.follow(self.stage.thrust[self.shown], self.shown)
-        if not self._context.settings.reduced_motion:
-            self._time += STEP
         self.policy_map.follow(self.env, self.shown, self.swarm.policy)
 
     def fly(self) -> None:
@@ -192,19 +190,19 @@ class Watched:
 
     def draw(self, canvas: Canvas, between: float) -> None:
         """Draw the world, the map and the swarm."""
-        calm, canvas = self._context.settings.reduced_motion, self._world(canvas)
+        canvas = self._world(canvas)
         view, size = self._view(canvas, between), _SMALL if self.many else 1.0
-        backdrop, earth = landscape(canvas.surface.get_size(), calm, "moon"), self.clear.earth(EARTH, EARTH_RADIUS)
-        backdrop.draw(canvas, self.camera, self._time, between, earth)
+        earth = self.clear.earth(EARTH, EARTH_RADIUS)
+        landscape(canvas.surface.get_size(), "moon").draw(canvas, self.camera, between, earth)
         self.policy_map.draw(canvas, view)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
-        draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
+        draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]))
         self.trails.draw(canvas, view, self.shown, self.clear.head)
         draw_crowd(canvas, view, poses[others], size)
         self._draw_shown(canvas, view, poses[self.shown])
-        self.stage.draw_dust(canvas, view, between)
+        self.stage.particles.draw(canvas.surface, view, between)
 
     def _others(self) -> Bools:
         """Which landers are drawn beside the one that is shown, (n,): all but those long wrecked."""
