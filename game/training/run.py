@@ -12,7 +12,6 @@ from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
 from ai.files import CONFIG, STATE_FILE
 from ai.nn import ModelFormatError
-from ai.training.config import InForce
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
@@ -128,7 +127,7 @@ class TrainingRun:
         return self.keeps and self.collection.left_behind and (self.collection.unsaved / STATE_FILE).exists()
 
     @property
-    def in_force(self) -> InForce | None:
+    def in_force(self) -> dict[str, float] | None:
         """Values of the scheduled settings now; None before the run has said where it stands."""
         return self.kind.in_force(self.config, self.history) if self.alive and len(self.history) else None
 

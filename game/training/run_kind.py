@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
-from ai.training.config import PRESETS, Config, InForce, in_force
+from ai.training.config import PRESETS, Config, in_force
 from ai.training.digit_session import DigitSession
 from ai.training.experiments import SABOTAGES
 from ai.training.lander_session import LanderSession
@@ -33,7 +33,7 @@ DIGITS: Final = RunKind(
     DigitSession, DigitConfig, {name: DIGIT_PRESETS[name] for name in ("modern", "classic")},
     lambda: texts.DIGIT_RUN_PRESETS,
     first=("learning_rate", "batch_size", "dropout"),
-    in_force=lambda _, run: InForce({"learning_rate": float(run["learning_rate"][-1])}),
+    in_force=lambda _, run: {"learning_rate": float(run["learning_rate"][-1])},
     page=("learning_rate", "batch_size", "dropout", "epochs", "convolutions", "hidden", "augmentation", SEED),
     chapters={"learning_rate": "downhill", "batch_size": "downhill", "epochs": "downhill", "hidden": "plane"},
     grace=1.0, patience=120.0,  # reading all test images takes long on a busy machine

@@ -13,7 +13,7 @@ from operator import attrgetter
 from typing import Any, Final, Literal
 
 from ai.lander.rewards import RewardWeights
-from ai.training.config import Config, InForce
+from ai.training.config import Config
 from ai.training.experiments import named, sabotaged
 from ai.training.history import History
 from ai.training.session import Session
@@ -172,7 +172,7 @@ class RunKind:
     chapters: Mapping[str, str] = field(default_factory=dict)  # of Learn, by the names of the knobs they explain
     sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
     # Values of the scheduled settings at the latest point of a run.
-    in_force: Callable[[Configuration, History], InForce] = lambda *_: InForce({})
+    in_force: Callable[[Configuration, History], dict[str, float]] = lambda *_: {}
     grace: float = 3.0  # seconds that a run has to end by itself when the window closes it
     patience: float = PATIENCE  # seconds for a turn of its worker
 
@@ -229,7 +229,7 @@ class RunSettings:
         self.knob_descriptions = {knob.name: knob for knob in run_kind.knob_descriptions}
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
-        self.in_force: InForce | None = None
+        self.in_force: dict[str, float] | None = None
         self.named, self.draft = run_kind.named(config), config
         self.set_config(config, seed)
 
@@ -278,7 +278,7 @@ class RunSettings:
 
     def now(self, name: str) -> float | None:
         """Return the value in effect at this moment, such as a schedule's; None if it is the knob's own."""
-        return self.in_force.values.get(name) if self.in_force else None
+        return self.in_force.get(name) if self.in_force else None
 
     def turn(self, name: str, value: Any) -> None:
         """Set a knob; an invalid value changes nothing, and `problem` says why."""

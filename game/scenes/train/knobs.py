@@ -6,7 +6,6 @@ from collections.abc import Hashable
 from functools import partial
 from typing import Any, Final
 
-from ai.training.config import InForce
 from game.core import texts
 from game.core.scene import push
 from game.drawing.cursor import Cursor
@@ -73,7 +72,7 @@ class KnobsPanel:
     @property
     def shown(self) -> tuple[str, ...]:
         """Names of the knobs that are shown: few, or a page of them, without one whose time is over."""
-        if (in_force := self.settings.in_force) is None or _LAST not in in_force.values:
+        if (in_force := self.settings.in_force) is None or _LAST not in in_force:
             return self._run_kind.page if self.page else self._run_kind.first
         names = self._run_kind.page if self.page else (_LAST, *self._run_kind.first)
         return tuple(name for name in names if name != _FIRST)
@@ -97,7 +96,7 @@ class KnobsPanel:
             self.settings.set_running(running)
             self.show()
 
-    def show_in_force(self, in_force: InForce | None) -> None:
+    def show_in_force(self, in_force: dict[str, float] | None) -> None:
         """Show the values in force at this moment of a run beside the settings; None for none."""
         if in_force != self.settings.in_force:
             self.settings.in_force = in_force

@@ -19,12 +19,12 @@ def test_what_is_in_force_is_what_a_run_learns_and_flies_with():
     for _ in range(81):
         next(run)
     said = in_force(training.config, training.agent.decisions, training.episodes)
-    assert said.values["final_learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
-    assert said.values["epsilon_start"] == training.epsilon
-    assert "learning_rate" not in said.values
+    assert said["final_learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
+    assert said["epsilon_start"] == training.epsilon
+    assert "learning_rate" not in said
     run.send(("change", "final_learning_rate", 0.01))
     said = in_force(training.config, training.agent.decisions, training.episodes)
-    assert said.values["final_learning_rate"] == 0.01, "at once, also while it rests"
+    assert said["final_learning_rate"] == 0.01, "at once, also while it rests"
     next(run)
     assert training.agent.optimizer.learning_rate == 0.01
     run.close()
@@ -32,10 +32,10 @@ def test_what_is_in_force_is_what_a_run_learns_and_flies_with():
 
 def test_half_way_it_is_half_way():
     said = in_force(PRESETS["modern"], 7_500, 0)
-    assert said.values["epsilon_start"] == pytest.approx(0.525)
+    assert said["epsilon_start"] == pytest.approx(0.525)
     said = in_force(PRESETS["modern"], 50_000, 0)
-    assert said.values["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)
-    assert said.values["tau"] == pytest.approx((0.005 + 0.00025) / 2)
+    assert said["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)
+    assert said["tau"] == pytest.approx((0.005 + 0.00025) / 2)
 
 
 def test_without_a_last_share_the_target_s_rate_never_changes_by_a_bit():

@@ -100,10 +100,10 @@ def test_one_key_goes_from_area_to_area(watching: Driver, written: list[str]):
     ):
         press()
         assert shows(watching, written, order[place])
-    before = scene(watching).swarm.steps
+    before = scene(watching).swarm.env.steps[0]
     watching.key(pygame.K_PERIOD)  # and other keys do what they do
     watching.frames(3)
-    assert scene(watching).swarm.steps > before
+    assert scene(watching).swarm.env.steps[0] > before
     watching.button(pygame.CONTROLLER_BUTTON_B)
     assert watching.top_name == "WatchScene"
     assert not shows(watching, written, order[0])
