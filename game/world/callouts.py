@@ -42,7 +42,7 @@ class Callouts:
 
     def forget(self) -> None:
         """Start from the moment that is shown; events before it get no callout."""
-        self._was_down = bool(self._env.contacts[0].all())
+        self._was_down = bool(self._env.feet_down[0].all())
         self._was_over = bool(self._env.outcome[0] != Outcome.FLYING)
         self._contact = self._crash = -1  # steps since; -1 for none
 
@@ -52,7 +52,7 @@ class Callouts:
         crashed = bool(env.outcome[0] == Outcome.CRASHED)
         self._contact += self._contact >= 0
         self._crash += self._crash >= 0
-        down = bool(env.contacts[0].all()) and not crashed
+        down = bool(env.feet_down[0].all()) and not crashed
         began_down = env.steps[0] <= 2  # as a leg of a descent does, on its last pad
         if down and not self._was_down and self._contact < 0 and not began_down:
             self._contact = 0
