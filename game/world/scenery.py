@@ -102,10 +102,6 @@ class Scenery:
         """Return the camera's view, `alpha` of the way from the last step to this one."""
         return self._camera.view(scale, alpha)
 
-    def shot_of(self, path: Doubles) -> CameraTarget:
-        """Return a shot of a whole path (k, 2); with reduced motion, the resting shot."""
-        return self._camera.shot if self.calm else framing.whole(path)
-
     def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
         """Fill the view with sky and land; `earth` is where the Earth stands, in points."""
         env = self._flight.env
