@@ -35,8 +35,6 @@ _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
     (Progress, DigitProgress, Checkpoint, Validation, SettingChange), "history"
 )
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES
-# What an experiment has reported that takes the place of the run.
-_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks"
 _BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
 
 
@@ -74,7 +72,6 @@ class TrainingRun:
         self.differing: tuple[str, ...] = ()
         self._named = False  # whether the run was saved under its name
         self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
-        self._leaving: Worker | None = None  # of a healthy run whose place the experiment takes
         self._limit: int | None = None
         self._clear()
 
@@ -226,9 +223,6 @@ class TrainingRun:
     def close(self) -> None:
         """End the runs and their processes for certain."""
         self._next = None
-        if self._leaving is not None:
-            self._leaving.close(self.kind.grace)
-            self._take_place()
         if self.twin:
             self.twin.close()
         if self._worker:
@@ -248,10 +242,6 @@ class TrainingRun:
         notes.append(self._start_waiting())
         if self.twin is not None:
             notes += self.twin.poll()
-        if self._leaving is not None:
-            self._leaving.poll()
-            if self._leaving.gone:
-                self._take_place()
         self._keep_in_step()
         return [note for note in notes if note]
 
@@ -336,33 +326,6 @@ class TrainingRun:
             self.twin.close()
             self.twin, self.differing = None, ()
             self._keep_in_step()
-
-    def keep_twin(self) -> str:
-        """Go on with the experiment in place of the run, whose curves stay beside; return a note for the player, or "".
-
-        One that has ended cannot be kept, and nothing changes then.
-        """
-        twin = self.twin
-        if twin is None or not twin.alive or twin._worker is None or self._worker is None:
-            return texts.SPLIT_OVER
-        put_beside(self.earlier, self.name, self.history)
-        self._leaving, self._worker = self._worker, twin._worker
-        self._leaving.stop()
-        self.runs, self._named = self.runs + 1, False
-        for name in _TAKEN:
-            setattr(self, name, getattr(twin, name))
-        self.lesson, self.begun = None, True
-        twin._worker, self.twin, self.differing = None, None, ()
-        self._keep_in_step()
-        return ""
-
-    def _take_place(self) -> None:
-        """Let the experiment save itself in place of the run that has ended."""
-        self._leaving = None
-        if self.keeps:
-            with suppress(LibraryError):  # then it replaces what is there
-                self.collection.discard_rescued()
-            self.ask("autosave_to", self.collection.unsaved)
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""

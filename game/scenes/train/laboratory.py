@@ -60,7 +60,7 @@ class Laboratory:
         run: an experiment flies beside it.
         knobs: the settings that an experiment changes.
         start: starts the experiment.
-        leave: ends the split view, and keeps the experiment if that is true.
+        leave: ends the split view.
 
     """
 
@@ -69,7 +69,7 @@ class Laboratory:
         run: TrainingRun,
         knobs: KnobsPanel,
         start: Callable[[str], Transition | None],
-        leave: Callable[[bool], None],
+        leave: Callable[[], None],
     ) -> None:
         self._run, self._knobs, self._start, self._leave = run, knobs, start, leave
         self.page: Literal["", "picks", "guess", "result"] = ""
@@ -191,8 +191,7 @@ class Laboratory:
             following = names[(names.index(self.chosen.sabotage) + 1) % len(names)]
             words = texts.LAB_NEXT.format(name=texts.SABOTAGES[following][0])
             column.button(words, partial(self._ask, following), colour=HUMAN)
-        go_on, take = partial(self._leave, False), partial(self._leave, True)
-        column.words([(texts.LAB_KEEP_RUN, go_on), (texts.LAB_KEEP_EXPERIMENT, take), (texts.LAB_KNOBS, self.close)])
+        column.words([(texts.LAB_KEEP_RUN, self._leave), (texts.LAB_KNOBS, self.close)])
 
     def _sentence(self, subject: str) -> str:
         assert self.chosen is not None

@@ -290,14 +290,11 @@ class LanderView(View):
         knobs.set_config(config, seed)
         self.laboratory.begin()
 
-    def _leave_split(self, experiment: bool) -> None:
-        """End the split view; go on with the healthy run, or with the experiment."""
-        if not experiment:
-            self.run.leave()
-        elif note := self.run.keep_twin():
-            self.context.note(note)
+    def _leave_split(self) -> None:
+        """End the split view; the healthy run goes on."""
+        self.run.leave()
         self.scene.cleared()
-        self.laboratory.page = "result" if self.run.twin else ""
+        self.laboratory.close()
 
     # The picture
 

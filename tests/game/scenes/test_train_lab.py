@@ -119,28 +119,9 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     assert "SIGKILL" in run.twin.problem
     beside.frames(21)
     assert beside.top.view.laboratory.came is None, "that is no verdict on the experiment"
-    beside.press_on(texts.LAB_KEEP_EXPERIMENT)
-    assert beside.said == texts.SPLIT_OVER
-    assert run.twin is not None
     beside.press_on(texts.LAB_KEEP_RUN)
     assert run.twin is None
     assert run.state is WorkerState.RUNNING
-
-
-def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(beside: Driver, tmp_path: Path) -> None:
-    split(beside)
-    run = beside.top.run
-    os.kill(run._worker.process_id, signal.SIGKILL)
-    beside.wait(lambda: run.state is WorkerState.FAILED)
-    assert "SIGKILL" in run.problem
-    beside.press_on(texts.LAB_KEEP_EXPERIMENT)
-    assert run.state is WorkerState.RUNNING
-    assert run.config.learning_rate == 0.3
-    beside.frames(5)
-    beside.app.close()
-    kept = Library(tmp_path / "user").rescued()
-    assert kept is not None
-    assert kept.changes
 
 
 def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path) -> None:
@@ -242,7 +223,7 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     split(train)
     for each in (scene.run, scene.run.twin):
         train.wait(partial(flown, each))
-    train.press_on(texts.LAB_KEEP_EXPERIMENT)
+    train.press_on(texts.LAB_KNOBS)
     train.frames(14)
     curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
     legend = {row.label for row in train.form.widgets if isinstance(row, RunRow)}
