@@ -252,7 +252,6 @@ class FlownFlight:
         for name, readout in self._readouts.items():
             self._readouts[name] = replace(readout, label=fresh[name].label, what=fresh[name].what)
         self.interventions.forget()
-        self.copilot_panel.forget()
         self.copilot_panel.follow(self.flight, self.futures)
 
     def make_card(self) -> OutcomeCard:
