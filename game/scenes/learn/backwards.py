@@ -18,7 +18,7 @@ from game.digits.kept import classifier_in, mnist_test
 from game.digits.pictures import GREY, SIGNED, picture
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL
 from game.explain.figures import decimal, percent
 from game.scenes.learn.chapter import Chapter
 from game.ui.context import Context
@@ -171,7 +171,7 @@ class BackwardsChapter(Chapter):
             blamed = self.model.reached >= 4 - stage
             shows = (stage, blamed, self.model.steps, self.model.chosen)
             self._cache.draw(canvas, area, shows, partial(self._paint, stage, blamed, columns))
-            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=CAPTION, colour=MUTE)
+            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=LABEL, colour=MUTE)
             for unit in range(columns * rows if stage else 0):
                 spot = _spot(box, stage, unit)
                 canvas.explain(spot, self.unit(stage, unit))

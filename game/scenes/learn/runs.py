@@ -19,7 +19,7 @@ from game.core import texts
 from game.core.scene import Route
 from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, NIGHT0, SMALL, Colour
 from game.explain.figures import percent, points
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import HEAD, draw_axis, draw_curve, draw_landers
@@ -240,9 +240,9 @@ class TargetChapter(DuelChapter):
         y = box.bottom - box.height * float(self.heights(np.array(BOUND)))
         canvas.line((box.left, y), (box.right, y), MUTE, 1.5)
         said = texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}")
-        width = min(canvas.text_width(said, size=CAPTION), box.width)
+        width = min(canvas.text_width(said, size=LABEL), box.width)
         canvas.fill(canvas.rect(box.right - width - 4, y - 18, width + 4, 16), NIGHT0)
-        canvas.text(said, (box.right, y - 6), size=CAPTION, colour=MUTE, align="right", room=box.width)
+        canvas.text(said, (box.right, y - 6), size=LABEL, colour=MUTE, align="right", room=box.width)
 
 
 DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions: of the left agent, and of the right one to choose

@@ -13,7 +13,7 @@ from game.drawing.tokens import MUTE, SMALL, TITLE
 from game.explain.readouts import rate_colour
 from game.ui.hints import Hint, HintRow
 
-CAPTION: Final = 32.0  # points below a chart, for what is said of it
+LABEL: Final = 32.0  # points below a chart, for what is said of it
 _SIDE: Final = (320.0, 422.0)  # width of the panel at least and at most
 _WIDE: Final = 680.0  # points of a window from which the panel stands beside the display
 _BELOW: Final = 0.4  # share of a tall window for the panel
@@ -55,11 +55,11 @@ def layout(view: pygame.FRect, charts: int) -> Layout:
         panel.height = view.height - display.height
     rows = -(-charts // _COLUMNS)
     share = _CHARTS[rows > 1] * display.height / rows
-    height = min(max(share - CAPTION, _CHART[0]), _CHART[1])
-    top = display.bottom - rows * (height + CAPTION) - 8
+    height = min(max(share - LABEL, _CHART[0]), _CHART[1])
+    top = display.bottom - rows * (height + LABEL) - 8
     width = (display.width - 2 * _MARGIN - (_COLUMNS - 1) * _MARGIN) / _COLUMNS
     boxes = tuple(
-        pygame.FRect(_MARGIN + column * (width + _MARGIN), top + row * (height + CAPTION), width, height)
+        pygame.FRect(_MARGIN + column * (width + _MARGIN), top + row * (height + LABEL), width, height)
         for row, column in (divmod(number, _COLUMNS) for number in range(charts))
     )
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
