@@ -82,6 +82,9 @@ class Polygon:
         after = _following(edges)
         if (length(edges) < 1e-9).any() or (cross(edges, after) <= 0).any():
             raise ValueError(f"a polygon must be convex, its corners distinct and not in line: {vertices!r}")
+        # A star turns left at each corner, too, but more than once around.
+        if np.arctan2(cross(edges, after), dot(edges, after)).sum() > 2 * np.pi + 1e-6:
+            raise ValueError(f"a polygon must not cross itself: {vertices!r}")
         self.vertices = corners
         self.normals = right_of(edges) / length(edges)[:, None]
         self._measure()

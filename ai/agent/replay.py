@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
@@ -206,24 +205,14 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 def make_replay(config: AgentConfig, num_features: int) -> ReplayBuffer:
     """Make the empty replay buffer of a configuration, for observations of so many features.
 
-    Raises ValueError for one that is larger than this machine's memory.
+    Raises ValueError for one that this machine has no memory for.
     """
-    size = config.replay_size * (8 * num_features + 16)
-    if size > _memory():
-        raise ValueError(
-            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take {size / 1e9:,.1f} GB, "
-            f"and this machine has {_memory() / 1e9:,.1f}"
-        )
-    if config.prioritised:
-        return PrioritisedReplayBuffer(
-            config.replay_size, num_features, config.replay_prune, config.priority_exponent, config.importance_exponent
-        )
-    return ReplayBuffer(config.replay_size, num_features, config.replay_prune)
-
-
-def _memory() -> float:
-    """Return how many bytes of memory this machine has; endless where it does not say."""
+    sizes = config.replay_size, num_features, config.replay_prune
     try:
-        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    except (AttributeError, ValueError, OSError):
-        return float("inf")
+        if config.prioritised:
+            return PrioritisedReplayBuffer(*sizes, config.priority_exponent, config.importance_exponent)
+        return ReplayBuffer(*sizes)
+    except MemoryError as error:
+        raise ValueError(
+            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take too much memory"
+        ) from error

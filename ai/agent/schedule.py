@@ -17,11 +17,6 @@ def linear(start: float, end: float, done: int, total: int) -> float:
     return start * (1.0 - share) + end * share
 
 
-def geometric(start: float, end: float, factor: float, done: int) -> float:
-    """Return `start` times `factor` for each of `done` steps, never below `end`."""
-    return max(end, start * factor**done)
-
-
 def learning_rate(config: AgentConfig, decisions: int) -> float:
     """Return the learning rate after so many decisions: it falls in a straight line over the schedule."""
     return linear(config.learning_rate, config.final_learning_rate, decisions, config.schedule_decisions)
@@ -44,8 +39,8 @@ def exploration(config: AgentConfig, decisions: int, episodes: int) -> float:
     It falls by a factor with each episode, in a straight line with decisions, or both: the line then starts at what the
     factor has left. Never does it fall below `epsilon_end`.
     """
-    start, end = config.epsilon_start, config.epsilon_end
-    start = geometric(start, end, config.epsilon_decay, episodes)
+    end = config.epsilon_end
+    start = max(end, config.epsilon_start * config.epsilon_decay**episodes)
     return linear(start, end, decisions, config.epsilon_decisions) if config.epsilon_decisions else start
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -23,7 +22,6 @@ from ai.files import (
     count_of,
     inside,
     read_arrays,
-    read_as,
     read_json,
     recover_folder,
 )
@@ -83,7 +81,10 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
         agent = _read_description(folder, make)
     for name in ("online", "target"):
         with reading(folder, name):
-            setattr(agent, name, _read_network(inside(folder, name), getattr(agent, name)))
+            network = NeuralNetwork.load(inside(folder, name))
+            if _sizes(network) != _sizes(agent.online):
+                raise ValueError("its sizes are not those of the agent's settings")
+            setattr(agent, name, network)
     with reading(folder, OPTIMIZER_FILE):
         values = agent.online.values
         most = (len(agent.optimizer.remembers) + 1) * values.nbytes + _SLACK
@@ -92,15 +93,10 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
     return agent
 
 
-@dataclass(frozen=True)
-class _Described:
-    config: dict[str, Any]
-
-
 def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) -> A:
     """Make an agent as the file of settings and counts describes it."""
     described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, VERSION)
-    settings = read_as(_Described, described).config
+    settings = dict(described["config"])
     if missing := AgentConfig.names() - settings.keys():
         raise ValueError(f"settings are missing: {', '.join(sorted(missing))}")
     run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
@@ -112,14 +108,6 @@ def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) 
     if agent.normalizer:
         agent.normalizer.load(described["scale"])
     return agent
-
-
-def _read_network(folder: Path, like: NeuralNetwork) -> NeuralNetwork:
-    """Read a network of the sizes of `like`."""
-    network = NeuralNetwork.load(folder)
-    if _sizes(network) != _sizes(like):
-        raise ValueError("its sizes are not those of the agent's settings")
-    return network
 
 
 def _sizes(network: NeuralNetwork) -> list[Any]:

@@ -14,8 +14,8 @@ from ai.digits.augmentation import Strength, augment
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
 from ai.digits.preprocessing import Image
-from ai.digits.training import accuracy, read_summary
-from ai.files import CONFIG
+from ai.digits.training import accuracy
+from ai.files import CONFIG, Share, read_as, read_json
 from ai.nn import Adam
 from ai.run import TRAINING_FILE
 
@@ -48,35 +48,6 @@ class Fixed:
     problem: str = ""  # why it was not kept
 
 
-def steps_to_fix(
-    classifier: DigitClassifier, image: Image, digit: int, data: tuple[Images, Labels], rng: np.random.Generator
-) -> Generator[FixStep, None, None]:
-    """Fine-tune a classifier, in place, to read an image (28, 28) as `digit`; end as soon as it is sure of it.
-
-    Each step learns from the image, bent a little, and from training images (`data`) at the same time: a network
-    that sees the new alone forgets the old (rehearsal, Robins 1995). Raises ValueError for a digit that is none,
-    or an image that is empty or not finite, and FloatingPointError if training diverges.
-    """
-    image = np.asarray(image, np.float32)
-    if digit not in range(DIGITS):
-        raise ValueError(f"a digit is a number from 0 to 9, not {digit!r}")
-    if not np.isfinite(image).all() or not image.any():
-        raise ValueError("there is nothing to learn from: the image is empty, or not finite")
-    network, (images, labels) = classifier.network, data
-    optimizer = Adam(LEARNING_RATE)
-    for step in range(STEPS):
-        if (probability := _probability(classifier, image, digit)) >= ENOUGH:
-            return
-        yield FixStep(step, probability)
-        chosen = rng.choice(len(images), min(REHEARSED, len(images)), replace=False)
-        copies = np.repeat(image[None], COPIES, axis=0)
-        copies[1:] = augment(copies[1:], rng, Strength().times(0.5))
-        batch = np.concatenate([copies, images[chosen]])
-        targets = np.eye(DIGITS, dtype=np.float32)[np.concatenate([np.full(COPIES, digit), labels[chosen]])]
-        network.train_batch(classifier.shaped(batch), targets, optimizer)
-    yield FixStep(STEPS, _probability(classifier, image, digit))
-
-
 def fix(
     folder: Path,
     image: Image,
@@ -86,40 +57,54 @@ def fix(
     train: tuple[Images, Labels] | None = None,
     test: tuple[Images, Labels] | None = None,
 ) -> Generator[list[FixStep | Fixed], Any, None]:
-    """Fine-tune the network in a folder on a drawing, and write the fixed one to `keep`; for a worker.
+    """Fine-tune the network in a folder on a drawing (28, 28), and write the fixed one to `keep`; for a worker.
 
-    Images are MNIST's, unless others are given.
-    Raises what `steps_to_fix`, `DigitClassifier.load` and `load_part` raise.
+    Each step learns from the drawing, bent a little, and from training images at the same time: a network that sees
+    the new alone forgets the old (rehearsal, Robins 1995). It ends as soon as it is sure of the digit. Images are
+    MNIST's, unless others are given. Raises ValueError for a digit that is none, or an image that is empty or not
+    finite, FloatingPointError if training diverges, and what `DigitClassifier.load` and `load_part` raise.
     """
-    classifier = DigitClassifier.load(folder)
-    first = _probability(classifier, image, digit)
+    image = np.asarray(image, np.float32)
+    if digit not in range(DIGITS):
+        raise ValueError(f"a digit is a number from 0 to 9, not {digit!r}")
+    if not np.isfinite(image).all() or not image.any():
+        raise ValueError("there is nothing to learn from: the image is empty, or not finite")
+    classifier, rng, optimizer = DigitClassifier.load(folder), np.random.default_rng(digit), Adam(LEARNING_RATE)
+    first = now = _probability(classifier, image, digit)
     yield [FixStep(0, first)]
-    tested = test or load_part(TEST)
-    before = _known_accuracy(folder)
-    if before is None:
-        before = accuracy(classifier, *tested)
+    tested, (images, labels) = test or load_part(TEST), train or load_part(TRAIN)
+    before = after = _known_accuracy(folder) or accuracy(classifier, *tested)
     taken = 0
-    for step in steps_to_fix(classifier, image, digit, train or load_part(TRAIN), np.random.default_rng(digit)):
-        taken = step.step + 1
-        yield [step]
-    taken = min(taken, STEPS)
-    after = accuracy(classifier, *tested) if taken else before
-    probability = first, _probability(classifier, image, digit)
+    while now < ENOUGH and taken < STEPS:
+        chosen = rng.choice(len(images), min(REHEARSED, len(images)), replace=False)
+        copies = np.repeat(image[None], COPIES, axis=0)
+        copies[1:] = augment(copies[1:], rng, Strength().times(0.5))
+        batch = np.concatenate([copies, images[chosen]])
+        targets = np.eye(DIGITS, dtype=np.float32)[np.concatenate([np.full(COPIES, digit), labels[chosen]])]
+        classifier.network.train_batch(classifier.shaped(batch), targets, optimizer)
+        now, taken = _probability(classifier, image, digit), taken + 1
+        yield [FixStep(taken, now)]
     kept, problem = None, ""
     if taken:
+        after = accuracy(classifier, *tested)
         try:
             classifier.save(keep, test=after, fixed={"digit": digit, "steps": taken, "before": before})
             kept = keep
         except (OSError, ValueError) as error:
             problem = getattr(error, "strerror", None) or str(error)
-    yield [Fixed(digit, probability, (before, after), taken, kept, problem)]
+    yield [Fixed(digit, (first, now), (before, after), taken, kept, problem)]
+
+
+@dataclass(frozen=True)
+class _Tested:
+    test: Share | None = None
 
 
 def _known_accuracy(folder: Path) -> float | None:
     """Return the test accuracy stored in a network's folder, if there is one."""
     for file in (CONFIG, TRAINING_FILE):  # of a fix, and of a training
         with suppress(OSError, ValueError):
-            if (test := read_summary(folder, file).test) is not None:
+            if (test := read_as(_Tested, read_json(folder / file)).test) is not None:
                 return test
     return None
 

@@ -22,7 +22,6 @@ from ai.files import (
     OneOf,
     Seed,
     Share,
-    Sized,
     array_like,
     inside,
     number_of,
@@ -256,19 +255,6 @@ def confusion(labels: npt.NDArray[Any], read: npt.NDArray[np.intp]) -> npt.NDArr
 
 
 @dataclass(frozen=True)
-class DigitRunSummary:
-    """Figures in a run's training file that can be shown even where the rest of it is damaged.
-
-    `test` and `held_out` are accuracies on the test and the validation images, 0 to 1; None if not measured.
-    """
-
-    preset: Annotated[str, Sized(1000)] = ""
-    seconds: Duration = 0.0
-    held_out: Share | None = None
-    test: Share | None = None
-
-
-@dataclass(frozen=True)
 class DescribedRun:
     """What the training file of a run says."""
 
@@ -279,11 +265,6 @@ class DescribedRun:
     seconds: Duration
     held_out: Share | None
     history: tuple[dict[str, Any], ...]
-
-
-def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
-    """Return the figures of a run, or of a fix in its own `file`; raises OSError or ValueError."""
-    return read_as(DigitRunSummary, read_json(folder / file))
 
 
 def read_settings(folder: Path) -> tuple[DigitConfig, DescribedRun]:

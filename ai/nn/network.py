@@ -192,8 +192,10 @@ class NeuralNetwork:
         examples, targets = np.asarray(x, self.dtype), np.asarray(y, self.dtype)
         if len(examples) != len(targets) or not len(examples):
             raise ValueError(f"{len(examples)} inputs need as many targets, at least one; not {len(targets)}")
-        if not (np.isfinite(examples).all() and np.isfinite(targets).all()):
-            raise ValueError("inputs and targets are finite numbers")
+        for name, numbers in (("input", examples), ("target", targets)):
+            if not np.isfinite(numbers).all():
+                row, *place = np.argwhere(~np.isfinite(numbers))[0].tolist()
+                raise ValueError(f"{name} {row} is {numbers[row, *place]} at place {place}, and no finite number")
         optimizer = optimizer or SGD(learning_rate)
         rng = rng or np.random.default_rng(0)
         history = []
@@ -212,9 +214,12 @@ class NeuralNetwork:
     def correct(self, prediction: Array, y: npt.ArrayLike, optimizer: Optimizer) -> float:
         """Do the second half of `train_batch`, for `prediction` as the last forward pass returned it."""
         target: Array = np.asarray(y, self.dtype)
+        if prediction.shape != target.shape:
+            raise ValueError(f"the targets have shape {target.shape}, the predictions {prediction.shape}")
         with np.errstate(over="ignore", invalid="ignore"):
             cost = self.cost(prediction, target)
             self.backward_propagate(self.cost.derivative(prediction, target))
+        optimizer.serve(self.values)
         if len(target):
             optimizer.step(self.values, self.gradients, cost)
         return cost
@@ -264,6 +269,8 @@ def _batches(
     """Yield what picks each batch of one epoch; the last may be smaller."""
     if sampling not in ("sequential", "random"):
         raise ValueError(f"sampling is 'sequential' or 'random', not {sampling!r}")
+    if batch_size < 1:
+        raise ValueError(f"batch_size is at least 1, not {batch_size}")
     order = rng.permutation(examples) if sampling == "random" else None
     for start in range(0, examples, batch_size):
         batch = slice(start, start + batch_size)

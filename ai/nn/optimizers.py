@@ -46,6 +46,11 @@ class Optimizer(ABC):
         self.steps = 0
         self.memory: dict[str, Array] = {}
         self.scratch: Array = np.empty(0)
+        self._moved: Array | None = None  # the parameters of the network that it serves
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Copy and pickle all but whose parameters they are: a copy moves those of a copied network."""
+        return vars(self) | {"_moved": None}
 
     def step(self, values: Array, gradients: Array, cost: float = 0.0) -> float:
         """Move `values`, in place, and return the length of `gradients` as they came.
@@ -73,6 +78,13 @@ class Optimizer(ABC):
         self.steps += 1
         return length
 
+    def serve(self, values: Array) -> None:
+        """Take note of the network's parameters that are to be moved; raises ValueError if others were before."""
+        if self.remembers and self._moved is not values:
+            if self._moved is not None and self.steps:
+                raise ValueError("an optimizer remembers one network's gradients; another network needs its own")
+            self._moved = values
+
     def state(self) -> dict[str, npt.NDArray[Any]]:
         """Return copies of all that the next step depends on, besides the settings."""
         return {"steps": np.array(self.steps)} | {name: memory.copy() for name, memory in self.memory.items()}
@@ -88,7 +100,7 @@ class Optimizer(ABC):
             raise ValueError(f"not a state of {type(self).__name__}: it holds {', '.join(sorted(state))}")
         steps = count_of(state["steps"].tolist())
         memory = {name: array_like(values, state[name], name) for name in names}
-        self.steps, self.memory, self.scratch = steps, memory, np.empty(0)
+        self.steps, self.memory, self.scratch, self._moved = steps, memory, np.empty(0), None
 
     @abstractmethod
     def _fill_step(self, gradients: Array, number: int) -> None:

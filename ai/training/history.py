@@ -33,6 +33,7 @@ CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
 _FORMERLY: Final = "history.npz"
 _VERSION: Final = 2
+_TURNING: Final = 1.0  # seconds of training between two changes of a knob that is still being turned
 _MOST_VALUES: Final = 1 << 26  # numbers in all checkpoints together: 256 MB
 _SLACK: Final = 1 << 20  # bytes of an archive beside its numbers
 # What a run measures at each of its points, by name.
@@ -75,17 +76,12 @@ class Checkpoint:
 
 @dataclass(frozen=True)
 class SettingChange:
-    """Change of a knob during the run, or (REVERTED) a way back: `after` is then where to.
-
-    `amends` says that it replaces the last change of that name: the values that a drag passes through act only
-    for a moment, and only the last one counts.
-    """
+    """Change of a knob during the run, or (REVERTED) a way back: `after` is then where to."""
 
     decisions: Count
     name: str
     before: Any
     after: bool | int | float | str
-    amends: bool = False
     seconds: float = field(default=0.0, compare=False)  # of training
 
 
@@ -190,12 +186,11 @@ class History:
         self._appended += 1
 
     def _append_setting_change(self, entry: SettingChange) -> None:
-        if entry.amends:
-            last = next((each for each in reversed(self.setting_changes) if each.name == entry.name), None)
-            if last is not None:  # else there is nothing to amend: it stands for itself
-                self.setting_changes.remove(last)
-                entry = replace(entry, before=last.before)
-            entry = replace(entry, amends=False)
+        last = next((each for each in reversed(self.setting_changes) if each.name == entry.name), None)
+        if last and entry.name != REVERTED and entry.seconds - last.seconds < _TURNING:
+            # Values that a drag passes through act only for a moment, and only the last one counts.
+            self.setting_changes.remove(last)
+            entry = replace(entry, before=last.before)
         if entry.before != entry.after:  # otherwise the knob is back where it was
             self.setting_changes.append(entry)
 

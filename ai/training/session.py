@@ -13,15 +13,13 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, ClassVar, Final, Generic, Self, TypeVar
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
 from ai.training.messages import Command, Refused, RunStarted, problem_of
 from ai.training.run import Keeper
 from ai.training.run import resume as resume_run
-
-TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
 R = TypeVar("R", bound=Run)
 Commands = dict[str, Callable[..., None]]
@@ -51,7 +49,6 @@ class Session(ABC, Generic[R]):
         self.messages: list[Any] = []
         self._begun = self._finished = self._closed = False
         self._ending: Iterator[None] | None = None
-        self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
     @classmethod
     def live(
@@ -155,20 +152,8 @@ class Session(ABC, Generic[R]):
         self.messages.append(entry)
 
     def record_change(self, name: str, before: Any, after: Any) -> None:
-        """Record that a knob was turned, or what else was changed from outside.
-
-        One that is still being turned, a moment after the last time or without a step in between, amends that change.
-        """
-        training = self.training
-        now, last = training.clock(), self._turned_at.get(name)
-        self._turned_at[name] = now
-        earlier = next((each for each in reversed(self.history.setting_changes) if each.name == name), None)
-        amends = False
-        if before is not None and last is not None and earlier is not None:
-            amends = now - last < TURNING_SECONDS or earlier.decisions == training.moment
-            if amends and earlier.before == after:  # back where it was: the mark will be gone
-                del self._turned_at[name]
-        self.record(SettingChange(training.moment, name, before, after, amends, training.seconds))
+        """Record that a knob was turned, or what else was changed from outside."""
+        self.record(SettingChange(self.training.moment, name, before, after, self.training.seconds))
 
     # Commands
 
@@ -185,12 +170,8 @@ class Session(ABC, Generic[R]):
         """Save the run, as it is now, to a folder."""
         self.messages.append(self.keeper.save(folder))
 
-    def _autosave_to(self, folder: Path) -> None:
-        """Save the run by itself to this folder from now on."""
-        self.keeper.move_to(folder)
-
     def _finish(self) -> None:
         """Take no more steps: keep the run, measure it, and end."""
         self._finished = True
 
-    commands: ClassVar[Commands] = {"change": change, "save": save, "autosave_to": _autosave_to, "finish": _finish}
+    commands: ClassVar[Commands] = {"change": change, "save": save, "finish": _finish}

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 Shown = tuple[Source, int | None, Mapping[int, str]]  # a function, its lit line, and what stands beside lines
 _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
-_SPARE: Final = 4.0  # points beside a note, whose letters have whole pixels
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
 _BETWEEN: Final = 12.0  # points between code and notes
 _CODE: Final[Colour] = (190, 198, 214)
@@ -29,32 +28,20 @@ _PARTS: Final = re.compile(r"[-!<>=*/&|:+~]|[^-!<>=*/&|:+~]*[^-!<>=*/&|:+~\s]")
 
 
 def draw_listing(
-    canvas: Canvas,
-    box: pygame.typing.RectLike,
-    source: Source,
-    current: int | None = None,
-    notes: Mapping[int, str] | None = None,
+    canvas: Canvas, box: pygame.typing.RectLike, source: Source, current: int | None, notes: Mapping[int, str]
 ) -> None:
     """Draw the source in a box, in points; `current` is the number of the lit line, which is kept in sight.
 
-    `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They have a column
-    on the right, or a row below their line where they need more than half the box.
+    `notes` are short words in a column on the right, by the numbers of their lines: numbers of the case at hand.
     """
-    area, notes = pygame.FRect(box), notes or {}
+    area = pygame.FRect(box)
     letter = typeface.digit_width(LABEL, "code")
-    widths = {number: canvas.text_width(note, size=LABEL, tabular=True) + _SPARE for number, note in notes.items()}
-    below = {number for number, width in widths.items() if width > area.width / 2}  # in a row of its own
-    widest = max((width for number, width in widths.items() if number not in below), default=0.0)
-    beside = max(area.width / 3, widest) if notes else -_BETWEEN
+    beside = area.width / 3 if notes else -_BETWEEN
     room = int((area.width - _NUMBER - beside - _BETWEEN) // letter)
     canvas.text(source.path, (area.left, area.top + _LEADING * 0.8), size=LABEL, colour=MUTE)
     top = area.top + _LEADING * 1.4
-    rows: list[tuple[int, str, bool]] = []
-    for number, line in source.lines:
-        rows += _broken(number, line, max(room, 20))
-        rows += [(number, "", False)] if number in below else []
-    most = int((area.bottom - top) // _LEADING)
-    shown = _around(rows, current, most)
+    rows = [row for number, line in source.lines for row in _broken(number, line, max(room, 20))]
+    shown = _around(rows, current, int((area.bottom - top) // _LEADING))
     for place, (number, text, begins) in enumerate(shown):
         y = top + (place + 0.8) * _LEADING
         lit = number == current
@@ -64,11 +51,9 @@ def draw_listing(
         if begins:
             canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
                         colour=NET if lit else FAINT, align="right")  # fmt: skip
-        in_line, in_own_row = begins and number not in below, not begins and not text
-        if number in notes and (in_line or in_own_row):
-            start = area.right - beside if in_line else area.left + _NUMBER
-            colour, left = NET if lit else MUTE, area.right - start
-            canvas.text(notes[number], (start, y), size=LABEL, colour=colour, tabular=True, room=left)
+        if begins and number in notes:
+            canvas.text(notes[number], (area.right - beside, y), size=LABEL, colour=NET if lit else MUTE, tabular=True,
+                        room=beside)  # fmt: skip
         for part, colour, column in _coloured(text, lit):
             place_of = (area.left + _NUMBER + column * letter, y)
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
 
 import numpy as np
 
 from ai.explain.agent_lesson import Lesson
 from game.core import texts
 from game.training.run import TrainingRun
-
-_PATIENCE: Final = 30  # frames without an answer, after which a message says that it is being made
 
 
 class LessonDoor:
@@ -20,14 +17,14 @@ class LessonDoor:
     def __init__(self, run: TrainingRun, note: Callable[[str], object], rng: np.random.Generator) -> None:
         self._run, self._note, self._rng = run, note, rng
         self._shown = run.lesson
-        self._asked, self._waited = False, 0  # whether one was asked for, and how many frames ago
+        self._asked = False
 
     def ask(self, slot: int) -> None:
         """Ask for the lesson of a lander."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return
-        self._shown, self._asked, self._waited = self._run.lesson, True, 0
+        self._shown, self._asked = self._run.lesson, True
         self._run.ask("explain", slot)
 
     def ask_another(self) -> None:
@@ -46,9 +43,6 @@ class LessonDoor:
             self._note(note)
         lesson: Lesson | None = self._run.lesson
         if lesson is None or lesson is self._shown:
-            self._waited += 1
-            if self._waited == _PATIENCE:
-                self._note(texts.LESSON_ASKED)
             return None
         self._asked = False
         return lesson

@@ -16,7 +16,7 @@ from game.core import texts
 from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
 from game.explain.figures import points
 
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
@@ -29,7 +29,6 @@ _AXIS: Final = FIRST + len(ACTION_NAMES) * ROW + 6.0  # the last baseline, below
 HEIGHT: Final = _AXIS + 2.0
 _FIGURE: Final = 52.0  # room for figures, right of the bars
 _BAR: Final = 3.0
-_DIMMED: Final = (0.5, 0.12)  # words and bar of an action that the co-pilot does not let pass
 
 
 @dataclass(frozen=True)
@@ -39,17 +38,11 @@ class QValues:
     Attributes:
         points: value of each action, in points of reward.
         flown: the action that is flown.
-        asked: the action that the pilot asked for; None without a pilot.
-        feasible: the actions that the co-pilot would have let the pilot fly.
-        allowed: largest loss of a feasible action, in points below the best; None where another rule holds.
 
     """
 
     points: tuple[float, ...]
     flown: int
-    asked: int | None = None
-    feasible: tuple[bool, ...] = (True,) * len(ACTION_NAMES)
-    allowed: float | None = None
 
     @classmethod
     def of(cls, decision: Decision) -> QValues | None:
@@ -100,30 +93,22 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
     canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=NAME - 6)
     for baseline in (top, y):
         canvas.text(texts.Q_UNIT, (right, baseline), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
-    if values.allowed is not None and values.allowed < SPAN:
-        limit, first = x + values.fraction(values.allowed) * track, top + FIRST
-        canvas.line((limit, first - 9), (limit, first + 5 * ROW + 9), MUTE)
-        canvas.marker("triangle_down", (limit, first - 11), 6, INK, 0.8)
-        canvas.explain((limit - 8, first - 18, 16, 14), texts.EXPLAIN_COPILOT_ALLOWED)
 
 
 def _draw_row(canvas: Canvas, values: QValues, action: int, place: tuple[float, float], width: float) -> None:
     """Draw an action: its name, its bar, and how far it is behind the best."""
     (left, y), loss, flown = place, values.loss(action), action == values.flown
-    x, track, allowed = left + NAME, width - NAME - _FIGURE, values.feasible[action]
-    colour, alpha = INK if flown else MUTE, 1.0 if allowed or flown else _DIMMED[0]
-    canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=NAME - 20)
-    tone = NET if flown else mix(FAINT, NET, 0.45 if allowed else _DIMMED[1])
+    x, track, colour = left + NAME, width - NAME - _FIGURE, INK if flown else MUTE
+    canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, room=NAME - 20)
+    tone = NET if flown else mix(FAINT, NET, 0.45)
     canvas.bar((x, y - 1, track, _BAR), values.fraction(loss), tone)
     if flown:
         canvas.marker("triangle", (x - 8, y), 6, NET)
     if loss > SPAN:  # it lies beyond the left end of the scale
         canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
         canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
-    if action == values.asked:
-        canvas.dot((x + values.fraction(loss) * track, y), 4, HUMAN)
     figure = texts.Q_BEST if loss == 0 else behind(loss)
-    canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True, alpha=alpha)
+    canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
@@ -150,18 +135,9 @@ def decision_words(decision: Decision) -> Sequence[str]:
 
 
 def value_words(values: QValues, action: int) -> str:
-    """Say what the value of an action means now."""
+    """Say what the value of an action is now."""
     name = capital(texts.said(ACTION_NAMES[action]))
-    if not values.readable:
-        return texts.EXPLAIN_VALUE_NONE.format(name=name)
-    loss, value = values.loss(action), points(values.points[action], 1)
-    words = texts.EXPLAIN_VALUE_LESS if loss else texts.EXPLAIN_VALUE_BEST
-    said = [words.format(name=name, points=value, loss=behind(loss).lstrip("−"))]
-    if loss > SPAN:
-        said.append(texts.EXPLAIN_VALUE_OUTSIDE)
-    if action == values.flown:
-        said.append(texts.EXPLAIN_VALUE_FLOWN)
-    return " ".join(said)
+    return texts.EXPLAIN_VALUE_NOW.format(name=name, points=points(values.points[action], 1))
 
 
 def behind(loss: float) -> str:

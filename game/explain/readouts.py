@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -14,9 +14,8 @@ import pygame
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts
-from game.drawing.canvas import Canvas, Now, Point
+from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.paint_cache import PaintCache
 from game.drawing.shapes import Shape
 from game.drawing.tokens import FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NET, NIGHT0, SMALL, STEP, Colour
 from game.flight import outcomes
@@ -35,10 +34,6 @@ _SMALLER: Final = 26.0  # size of a figure that has little room
 _SHADE: Final = 0.8  # greatest darkness behind the read-outs
 _SIDES: Final = 0.05  # of a view's width, left free at either side
 _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
-# A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
-_ASIDE, _ABOVE = 4.0, 6.0
-_WORDS: Final = (180.0, 66.0)
-_FIGURES: Final = PaintCache(64)
 _PLENTY_OF_TIME: Final = 120.0
 _STILL: Final = 0.05  # m/s, and half a degree, below which a figure has no direction
 _LEAN: Final = 0.5
@@ -53,7 +48,7 @@ class Readout:
         limit: place of the limit's tick on the bar, 0 to 1; None for no limit.
         within: whether the value is within the limit; None without a limit.
         towards: the side to which it goes or leans: -1 left, 1 right, 0 neither.
-        what, now: what it is, and what it means now, for whoever asks.
+        what: what it is, for whoever asks.
 
     """
 
@@ -65,18 +60,16 @@ class Readout:
     within: bool | None = None
     towards: int = 0
     what: str = ""
-    now: Now = str
 
 
 def _altitude(env: LanderEnv, slot: int) -> Readout:
     altitude = max(0.0, float(env.altitude[slot]))
-    return Readout(texts.ALTITUDE, f"{altitude:.1f}", "m", now=partial(_now, "altitude", altitude))
+    return Readout(texts.ALTITUDE, f"{altitude:.1f}", "m", what=texts.EXPLAIN_READOUTS["altitude"])
 
 
 def _descent(env: LanderEnv, slot: int) -> Readout:
     descent = 0.0 - float(env.velocity[slot, 1])  # no minus before 0
-    shown = descent if abs(descent) >= _STILL else 0.0
-    return _limited("descent", texts.DESCENT, shown, env.limits.touch_speed, descent)
+    return _limited("descent", texts.DESCENT, descent if abs(descent) >= _STILL else 0.0, env.limits.touch_speed)
 
 
 def _drift(env: LanderEnv, slot: int) -> Readout:
@@ -93,13 +86,11 @@ def _tilt(env: LanderEnv, slot: int) -> Readout:
     return _limited("tilt", texts.TILT, tilt, math.degrees(env.limits.touch_tilt), towards=towards, unit="°")
 
 
-def _limited(
-    name: str, label: str, value: float, limit: float, said: float | None = None, *, towards: int = 0, unit: str = "m/s"
-) -> Readout:
-    """Return a read-out of what a touchdown limits; `said` is its value in words, if that is another."""
-    figure = f"{value:.0f}" if unit == "°" else f"{value:.1f}".replace("-", "−")
-    reach, now = max(0.0, value), partial(_now, name, value if said is None else said, limit)
-    return Readout(label, figure, unit, reach / (1.8 * limit), 1 / 1.8, reach <= limit, towards, now=now)
+def _limited(name: str, label: str, value: float, limit: float, *, towards: int = 0, unit: str = "m/s") -> Readout:
+    """Return a read-out of what a touchdown limits."""
+    figure, reach = f"{value:.0f}" if unit == "°" else f"{value:.1f}".replace("-", "−"), max(0.0, value)
+    what = texts.EXPLAIN_READOUTS[name].format(limit=f"{limit:.0f}°" if unit == "°" else f"{limit:.1f} {unit}")
+    return Readout(label, figure, unit, reach / (1.8 * limit), 1 / 1.8, reach <= limit, towards, what)
 
 
 def _thrust(env: LanderEnv, slot: int) -> Readout:
@@ -110,69 +101,36 @@ def _thrust(env: LanderEnv, slot: int) -> Readout:
 def _fuel(env: LanderEnv, slot: int) -> Readout:
     """Return the read-out of the fuel used, or, where the tank is limited, of the fuel left."""
     burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # rounded as on the card and for medals
-    now = partial(_now, "fuel", float(env.fuel[slot]))
+    what = texts.EXPLAIN_READOUTS["fuel"]
     if tank == math.inf:
-        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s", now=now)
+        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s", what=what)
     left = max(0.0, tank - burnt)
     within = None if left > LITTLE_FUEL * tank else False
-    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=within, now=now)
+    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=within, what=what)
 
 
 def _time(env: LanderEnv, slot: int) -> Readout:
     """Return the read-out of the time left, or, where there is plenty, of the time flown."""
     flown, limit = float(env.time[slot]), env.limits.time
-    now = partial(_now, "time", flown, limit)
     if limit > _PLENTY_OF_TIME:
-        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s", now=now)
+        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
     left = max(0.0, limit - flown)
-    return Readout(
-        texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > LITTLE_TIME else False, now=now
-    )
+    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > LITTLE_TIME else False)
 
 
-def _now(name: str, value: float, limit: float = math.inf) -> str:
-    """Say what a read-out means now."""
-    if name == "descent" and value < 0:
-        return texts.EXPLAIN_CLIMBING.format(value=-value)
-    said = texts.EXPLAIN_READOUTS_NOW[name].format(value=value, limit=limit)
-    return f"{said} {texts.EXPLAIN_BEYOND}" if value > limit else said
-
-
-@dataclass(frozen=True)
-class Gauge:
-    """What a read-out reads.
-
-    Attributes:
-        read: makes it, given an environment and a slot.
-        pilots: whether a pilot needs it all the time; these stand on the left.
-        cause: the crash that is named by it, if any.
-        felt: which of an impact's figures that crash has.
-
-    """
-
-    read: Callable[[LanderEnv, int], Readout]
-    pilots: bool = False
-    cause: Cause | None = None
-    felt: int = 0
-
-
-# Four on the left, three on the right: the landing pad stands in the middle. A name is its key in the texts.
-GAUGES: Final = {
-    "altitude": Gauge(_altitude, pilots=True),
-    "descent": Gauge(_descent, pilots=True, cause=Cause.HARD, felt=0),
-    "drift": Gauge(_drift, pilots=True, cause=Cause.SLIDING, felt=1),
-    "tilt": Gauge(_tilt, pilots=True, cause=Cause.TILTED, felt=2),
-    "thrust": Gauge(_thrust),
-    "fuel": Gauge(_fuel),
-    "time": Gauge(_time),
-}
-PILOT: Final = tuple(name for name, gauge in GAUGES.items() if gauge.pilots)
+GAUGES: Final[dict[str, Callable[[LanderEnv, int], Readout]]] = {
+    "altitude": _altitude, "descent": _descent, "drift": _drift, "tilt": _tilt, "thrust": _thrust, "fuel": _fuel,
+    "time": _time,
+}  # fmt: skip
+# What a pilot needs all the time stands on the left, the rest on the right: the landing pad stands in the middle.
+PILOT: Final = ("altitude", "descent", "drift", "tilt")
+# The read-out that names a crash, and which of an impact's figures that has.
+FELT: Final = {Cause.HARD: ("descent", 0), Cause.SLIDING: ("drift", 1), Cause.TILTED: ("tilt", 2)}
 
 
 def flight_readouts(env: LanderEnv, slot: int = 0) -> dict[str, Readout]:
     """Return the read-outs of a flight, by their names in `GAUGES`."""
-    explained = texts.EXPLAIN_READOUTS
-    return {name: replace(gauge.read(env, slot), what=explained.get(name, "")) for name, gauge in GAUGES.items()}
+    return {name: read(env, slot) for name, read in GAUGES.items()}
 
 
 def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]:
@@ -181,16 +139,15 @@ def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]
     On level ground it becomes what the foot felt, which a turning craft puts down faster than it falls itself.
     """
     cause = outcomes.cause_of(env)
-    named = next((name for name, gauge in GAUGES.items() if gauge.cause is cause), "")
-    if env.outcome[0] != Outcome.CRASHED or not named:
+    if env.outcome[0] != Outcome.CRASHED or cause not in FELT:
         return readouts
+    name, number = FELT[cause]
+    felt = float(env.impact[0, number])
+    figure = f"{math.degrees(felt):.0f}" if cause is Cause.TILTED else f"{felt:.1f}"
     if outcomes.struck_side(env):  # neither down nor across, but the faster of the two is nearer to it
-        named = max(("descent", "drift"), key=lambda name: readouts[name].fill or 0.0)
-        figure = readouts[named].figure
-    else:
-        felt = float(env.impact[0, GAUGES[named].felt])
-        figure = f"{math.degrees(felt):.0f}" if cause is Cause.TILTED else f"{felt:.1f}"
-    return {**readouts, named: replace(readouts[named], figure=figure, within=False)}
+        name = max(("descent", "drift"), key=lambda each: readouts[each].fill or 0.0)
+        figure = readouts[name].figure
+    return {**readouts, name: replace(readouts[name], figure=figure, within=False)}
 
 
 def foot_of(canvas: Canvas, names: Iterable[str]) -> pygame.FRect:
@@ -245,15 +202,24 @@ def _draw_readout(canvas: Canvas, box: pygame.FRect, readout: Readout) -> None:
     x, y, wide = box.left, box.top + _BAR_LINE, min(_BAR[0], box.width)
     colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
     size = FIGURE if box.width > _BAR[0] else _SMALLER
-    shows = readout.label, readout.figure, readout.unit, readout.within, readout.towards, size
-    paint = partial(_paint_readout, readout=readout, colour=colour, size=size)
-    _FIGURES.draw(canvas, (x - _ASIDE, box.top - _ABOVE, *_WORDS), shows, paint)
+    top, line = box.top + _LABEL_LINE, box.top + _FIGURE_LINE
+    end = canvas.text(readout.label, (x, top), size=LABEL, colour=MUTE, weight="medium").right + 9
+    if readout.towards:
+        draw_arrow(canvas, (end + 5, top - 4), 16.0 * readout.towards, INK)
+        end += 24
+    if readout.within:
+        canvas.dot((end, top - 4), 2.0, colour, 0.9)
+    elif readout.within is not None:
+        canvas.marker("triangle", (end, top - 4), 9, colour)
+    figure = canvas.text(readout.figure, (x - 1, line), size=size, colour=colour, weight="light", tabular=True)
+    gap, rise = (3, _CAPITAL * (size - SMALL)) if readout.unit == "°" else (6, 0.0)
+    canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
     if readout.fill is not None:
         canvas.bar((x, y, wide, _BAR[1]), readout.fill, colour)
     if readout.limit is not None:
         canvas.line((x + readout.limit * wide, y - 3), (x + readout.limit * wide, y + 5), INK)
     if readout.what:
-        canvas.explain(box.move(-_ASIDE, 0), readout.what, readout.now)
+        canvas.explain(box.move(-4.0, 0), readout.what)
 
 
 @lru_cache(maxsize=2)
@@ -266,20 +232,6 @@ def _shade(size: tuple[int, int]) -> pygame.Surface:
     return shade.premul_alpha_ip()
 
 
-def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour, size: float) -> None:
-    """Draw label, mark, figure and unit on a cached sheet, as most stay the same for some frames."""
-    top, line = _ABOVE + _LABEL_LINE, _ABOVE + _FIGURE_LINE
-    end = canvas.text(readout.label, (_ASIDE, top), size=LABEL, colour=MUTE, weight="medium").right + 9
-    if readout.towards:
-        draw_arrow(canvas, (end + 5, top - 4), 16.0 * readout.towards, INK)
-        end += 24
-    if readout.within is not None:
-        draw_mark(canvas, (end, top - 4), readout.within)
-    figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=size, colour=colour, weight="light", tabular=True)
-    gap, rise = (3, _CAPITAL * (size - SMALL)) if readout.unit == "°" else (6, 0.0)
-    canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
-
-
 def draw_arrow(canvas: Canvas, middle: Point, reach: float, colour: Colour) -> None:
     """Draw a level arrow around its middle, `reach` points long: to the right, or to the left if that is negative."""
     x, y = middle
@@ -287,14 +239,6 @@ def draw_arrow(canvas: Canvas, middle: Point, reach: float, colour: Colour) -> N
     canvas.line((x - reach / 2, y), (tip, y), colour, 1.5)
     for lean in (-3.5, 3.5):
         canvas.line((tip, y), (tip - side * 5, y + lean), colour, 1.5)
-
-
-def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
-    """Draw a dot for a value within its limit, a triangle for one beyond it."""
-    if within:
-        canvas.dot(place, 2.0, canvas.palette.good, 0.9)
-    else:
-        canvas.marker("triangle", place, 9, canvas.palette.warn)
 
 
 def yours(human: float) -> int:

@@ -9,7 +9,7 @@ from typing import Final
 
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, STEP, TITLE, Colour
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, STEP, TITLE
 
 _BAR: Final = 2.5  # height of a bar
 _APART: Final = 18.0  # points between two columns of a table
@@ -110,8 +110,6 @@ class Part:
     figure: str
     word: str = ""
     what: str = ""
-    now: str = ""
-    colour: Colour = INK
 
 
 def formula(parts: Callable[[], Sequence[Part]]) -> Callable[[Cursor], None]:
@@ -127,11 +125,11 @@ def formula(parts: Callable[[], Sequence[Part]]) -> Callable[[Cursor], None]:
                 cursor.y += high
             if canvas := cursor.canvas:
                 baseline = cursor.y + BASELINE * figures.size
-                canvas.text(part.figure, (x, baseline), size=figures.size, colour=part.colour if part.word else MUTE,
+                canvas.text(part.figure, (x, baseline), size=figures.size, colour=INK if part.word else MUTE,
                             tabular=True)  # fmt: skip
                 canvas.text(part.word, (x, baseline + LEADING * words.size), size=words.size, colour=MUTE)
                 if part.what:
-                    canvas.explain((x, cursor.y, wide, high - STEP), part.what, partial(str, part.now))
+                    canvas.explain((x, cursor.y, wide, high - STEP), part.what)
             x += wide + (_APART if part.word else _APART / 1.5)
         cursor.y += high
 

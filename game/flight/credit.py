@@ -21,7 +21,6 @@ from game.flight.outcomes import OutcomeCard
 # Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
 ASSISTS: Final = dict(zip(HELP, (0.0, 0.04, 0.64), strict=True))
 OWN: Final = 0.9  # share of the steps from which on a helped landing is the person's own
-TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
 _EASINGS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are named
 # Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
 _OWN_HANDS: Final = frozenset({"toggle_thrust"})
@@ -154,11 +153,6 @@ class Credit:
         return not self.bar
 
     @property
-    def together(self) -> bool:
-        """Whether person and network have landed it together, which earns a ring in place of a medal."""
-        return self._flight.outcome is Outcome.LANDED and self._flight.share > 0 and self.bar in TOGETHER
-
-    @property
     def notice(self) -> str:
         """Text that says why it does not count, and what makes it easier; empty if it counts, or never could."""
         if self.assists:
@@ -178,8 +172,8 @@ class Credit:
         return mission.medal(float(env.fuel[0]), float(env.time[0]))
 
     def add_to(self, card: OutcomeCard) -> None:
-        """Add to a flight's card what it has earned, what made it easier, and why it does not count."""
+        """Add to a landing's card what it has earned, what made it easier, and why it does not count."""
         points = landing_score(self._flight.env)
-        card.score, card.assists = texts.SCORE.format(count=points) if points else "", self.assists
-        if self._flight.outcome is Outcome.LANDED and self.bar:
-            card.reason = self.barred
+        card.score = texts.SCORE.format(count=points) if points else ""
+        if card.good:
+            card.reason, card.advice = self.barred if self.bar else card.reason, self.assists

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from game.flight.flight import Flight
     from game.flight.futures import FuturesProcess
 
-_SHORT: Final = 8.0  # seconds before time is out, in which no network may be able to land
-_SOON: Final = 0.5  # seconds within which it must be known that no network lands, to be why no plan is held
 _PATIENCE: Final = 180  # steps for which a craft hangs on until a plan is found
 _NEAR: Final = STEPS / 4  # between a position of the stick and one that is flown in its place
 _NOTHING: Final = Push()
@@ -65,8 +63,7 @@ class Guard:
         late: those in which something else was flown only because what was asked for was not flown ahead in time.
         waits: whether what is asked for now was not flown ahead in time, so that what was asked for before counts.
         waited: decisions in which that was so.
-        bare: since when, in seconds of the flight, no plan is held, and the key of why; None while one is, and before
-            anything is guarded.
+        bare: since when, in seconds of the flight, it guards without a plan; None while it holds one.
 
     """
 
@@ -77,7 +74,7 @@ class Guard:
         self.saves = False
         self.waits = False
         self.decisions = self.late = self.waited = 0
-        self.bare: tuple[float, str] | None = None
+        self.bare: float | None = None
         self._wish = _NOTHING  # what was asked for in the decision that is flown now
         self._decision: SharedDecision | None = None
         self._alone: Decision | None = None  # what the network would do
@@ -94,9 +91,7 @@ class Guard:
         """Return whether a guardian goes by futures now; it begins with a decision, every fourth step."""
         copilot = self._crew.copilot
         if copilot is None or copilot.assist == 0 or self.ahead.problem:
-            if self.push and not flight.over:
-                self.bare = _seconds(flight), "process" if self.ahead.problem else "off"
-            self.push, self._moment = None, -1
+            self.push, self._moment, self.bare = None, -1, None
             return False
         return self.push is not None or _begins(flight)
 
@@ -159,22 +154,10 @@ class Guard:
         self.decisions += 1
         missing = held and bool(decision.overridden[0]) and wish not in known
         self.saves, self.late = bool(decision.overridden[0]) and not missing, self.late + missing
-        self._note(flight, known)
+        self.bare = None if self.safe else float(flight.env.time[0]) if self.bare is None else self.bare
         likely: Doubles | None = decision.likely[0] if by_hand else None
         self._ask(flight, (self.push,), stick, likely)
         return likely
-
-    def _note(self, flight: Flight[Any], known: Mapping[Push, Future]) -> None:
-        """Note since when no plan is held, and why."""
-        if self.safe:
-            self.bare = None
-            return
-        seconds = _seconds(flight)
-        since, why = self.bare or (seconds, "looking")
-        if why == "looking" and seconds - since < _SOON and all(key in known for key in KEYS):
-            left = float(np.max(flight.env.limits.time)) - seconds
-            why = "none" if left > _SHORT else "time"
-        self.bare = since, why
 
     def _wished(self, flight: Flight[Any], wish: Push, known: Mapping[Push, Future]) -> Push:
         """Return what is asked for in this decision.
@@ -216,10 +199,6 @@ def _begins(flight: Flight[Any]) -> bool:
 def _here(flight: Flight[Any]) -> int:
     """Return the steps flown, which tell one moment of the flight from another."""
     return int(flight.env.steps[0])
-
-
-def _seconds(flight: Flight[Any]) -> float:
-    return float(flight.env.time[0])
 
 
 def nearest(wish: Push, known: Mapping[Push, Future]) -> Push:

@@ -53,12 +53,6 @@ def decision_steps(policy: Policy | None) -> int:
     return steps if isinstance(steps, int) and steps > 0 else DECISION_STEPS
 
 
-def work_of(policy: Policy) -> int:
-    """Return about how many multiplications a policy takes for one decision: its network's parameters."""
-    network = getattr(policy, "network", None)
-    return getattr(policy, "work", 0) if network is None else int(network.values.size)
-
-
 @dataclass(frozen=True)
 class Network:
     """Network by name. `policy` is None if it could not be read, and `problem` then says why.

@@ -22,49 +22,23 @@ TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the f
 class OutcomeCard:
     """Contents of an outcome card, to which all that follow a flight add what they know.
 
-    `figures` are label, value and unit, `human` the person's share of the steps.
+    `figures` are label, value and unit.
     """
 
     good: bool
     title: str
     reason: str
     figures: tuple[tuple[str, str, str], ...]
-    human: float
-    who: str = ""  # else flew, as the subject of a sentence
-    advice: str = ""
-    assists: str = ""  # what made the flight easier
+    advice: str = ""  # one sentence
     score: str = ""
     medal: int = 0  # 3 for gold, 2, 1, 0 for none
-    ring: bool = False  # whether it was landed together with the network
-    stepped_in: int = 0  # how often the co-pilot intervened: as many as there are diamonds on the path
-    watched: bool = False  # whether a guardian that can tell has watched over it, to a landing
-    place: float = 0.5  # where the card stands across the window, 0 to 1
     intact: bool = False  # whether the craft came down whole beside the pad
-    rung: int | None = None  # place on the ladder of starts, None off it
-    climb: str = ""  # what the flight has changed there
-    quality: str = ""  # how well it was landed
-    compared: dict[str, str] = field(default_factory=dict)  # other scores from the same start, by their names
-
-    @property
-    def stepped_in_words(self) -> str:
-        """Text that says how often the co-pilot stepped in; empty if there is nothing to say."""
-        times, few = self.stepped_in, texts.CARD_SAVED
-        if not (times or self.watched):
-            return ""
-        return few[times] if times < len(few) else texts.CARD_SAVED_OFTEN.format(times=times)
+    climb: str = ""  # what the flight has changed on the ladder of starts
+    compared: dict[str, str] = field(default_factory=dict)  # what others did from the same start, by their names
 
 
-@dataclass(frozen=True)
-class RivalOutcome:
-    """Outcome of a rival from the same start; a figure it does not have is left out."""
-
-    name: str
-    result: str
-    figures: dict[str, tuple[str, str]]  # value and unit by label
-
-
-def outcome_card(env: LanderEnv, human: float) -> OutcomeCard:
-    """Return the outcome card of a flight that has ended; `human` is the person's share of the steps, 0 to 1."""
+def outcome_card(env: LanderEnv) -> OutcomeCard:
+    """Return the outcome card of a flight that has ended."""
     outcome, intact = Outcome(int(env.outcome[0])), bool(env.intact[0])
     title, reason = ending_word(outcome.name, intact=intact), texts.OUTCOMES[outcome.name][1]
     if outcome is Outcome.CRASHED:
@@ -75,11 +49,11 @@ def outcome_card(env: LanderEnv, human: float) -> OutcomeCard:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice, figures = texts.ADVICE.get(cause_of(env).name, ""), flight_figures(env)
     if outcome is not Outcome.LANDED:
-        return OutcomeCard(False, title, reason, figures, human, advice=advice, intact=intact)
+        return OutcomeCard(False, title, reason, figures, advice, intact=intact)
     met = qualities(env)
     title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
     quality = capital(texts.AND.join(texts.QUALITIES[name] for name in met))
-    return OutcomeCard(True, title, reason, figures, human, quality=quality)
+    return OutcomeCard(True, title, f"{quality}." if met else reason, figures)
 
 
 def qualities(env: LanderEnv) -> list[str]:

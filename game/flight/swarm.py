@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from copy import copy
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from game.flight.poses import Poses
 
 # Steps that an ended flight of a swarm stays visible.
 REST_STEPS: Final = 75
-_NOT_KEPT: Final = ("env", "policy", "poses")  # of a swarm's attributes, in a snapshot
 
 
 class Swarm:
@@ -30,7 +28,6 @@ class Swarm:
         decided: number of decisions of each slot.
         touched: mask of the slots whose flight a person has changed; such a flight is not counted.
         decision_steps: number of steps from one decision to the next, as the network was trained.
-        steps: number of steps since the beginning.
 
     """
 
@@ -47,7 +44,6 @@ class Swarm:
         self.decided: Ints = np.ones(count, dtype=np.intp)
         self.decision_steps = decision_steps(policy)
         self._age: Ints = np.arange(count) % self.decision_steps  # steps since the latest decision; staggered at first
-        self.steps = 0
 
     def step(self) -> Bools:
         """Advance by 1/60 s, and restart flights that have been over for a while. Return a mask of those just ended."""
@@ -58,7 +54,6 @@ class Swarm:
             self.touched[self.fresh] = False
         self._decide(np.flatnonzero(self.fresh | ((self._age == self.decision_steps) & (self.since_end == 0))))
         self._age += self.since_end == 0
-        self.steps += 1
         self.env.fly(self.decision.action)
         self.observation = self.env.observe()
         outcome = self.env.outcome
@@ -83,19 +78,6 @@ class Swarm:
         self.poses.take(np.arange(self.env.num_envs) == slot)
         due = np.array([slot])
         self._take(due, decide(self.policy, self.observation[due]))
-
-    def snapshot(self) -> dict[str, Any]:
-        """Return everything but the random streams, to be put back by `restore`."""
-        kept = {name: copy(value) for name, value in vars(self).items() if name not in _NOT_KEPT}
-        return {"env": self.env.snapshot(), **kept}
-
-    def restore(self, snapshot: dict[str, Any]) -> None:
-        """Go back to a snapshot of this swarm."""
-        self.env.restore(snapshot["env"])
-        for name, value in snapshot.items():
-            if name not in _NOT_KEPT:
-                setattr(self, name, copy(value))
-        self.poses.take(np.ones(self.env.num_envs, dtype=bool))
 
     def _decide(self, due: Ints) -> None:
         """Decide for the slots that are due; these are staggered so that all frames cost the same."""

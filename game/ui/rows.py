@@ -13,8 +13,6 @@ from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.curves import run_style
-from game.ui.tooltip import draw_swatch
 from game.ui.widget import EASE, NOWHERE, OnPress, RowWidget, mix
 
 Words = str | Callable[[], str]  # a function for words that change
@@ -25,7 +23,6 @@ _FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
 _SHARE: Final = 0.4  # of a line, that a choice among others takes at most
-_SWATCH: Final = 27.0  # points for a piece of a line before a name
 
 
 def said(words: Words) -> str:
@@ -106,23 +103,6 @@ class ButtonRow(RowWidget):
         return max(self.measured(cursor) + beside, below) + _WORDS
 
 
-class RunRow(ButtonRow):
-    """Name of a run to press, after a piece of its line in a chart."""
-
-    def __init__(self, name: str, style: int, press: OnPress) -> None:
-        super().__init__(name, press, size=SMALL)
-        self.style = style
-        self.pad = 3.0
-
-    def write(self, cursor: Cursor) -> None:
-        if cursor.canvas:
-            middle = cursor.y + LEADING * self.size / 2
-            draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
-        name = replace(cursor, left=cursor.left + _SWATCH, width=cursor.width - _SWATCH)
-        super().write(name)
-        cursor.y = name.y
-
-
 class ToggleRow(RowWidget):
     """Switch at the right end, its label and an explanation on the left."""
 
@@ -164,6 +144,7 @@ class SliderRow(RowWidget):
     """Slider: its label on the left or above, the figure at the right end, an explanation below."""
 
     by_arrows = True
+    colour: Colour = NET
 
     def __init__(
         self,
@@ -219,10 +200,10 @@ class SliderRow(RowWidget):
             words.text(self.label)
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
-            canvas.bar((left, middle - 1, right - left, 2), self.fraction, NET)
+            canvas.bar((left, middle - 1, right - left, 2), self.fraction, self.colour)
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
-            canvas.text(self._figure(self.value), place, colour=NET, align="right", tabular=True)
+            canvas.text(self._figure(self.value), place, colour=self.colour, align="right", tabular=True)
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size

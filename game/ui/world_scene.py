@@ -58,10 +58,11 @@ class WorldScene(FormScene):
         margin = min(MARGIN, _SIDES * view.width)
         left, width = margin, view.width - 2 * margin
         hints = max(_HINTS * len(self.hint_rows(canvas)), canvas.row)  # a message stands in their place
-        self.foot.lay_out(pygame.FRect(left, 0, width, _MOST * view.height), canvas.scale)
-        height = min(self.foot.height, _MOST * view.height)
-        foot = view.bottom + canvas.row - hints - 2 * STEP - height
-        self.foot.lay_out(pygame.FRect(left, foot, width, height), canvas.scale)
+        before = -1.0
+        while self.foot.height != before:  # it is as high as in the frame before, or is measured first
+            before, height = self.foot.height, min(self.foot.height, _MOST * view.height)
+            foot = view.bottom + canvas.row - hints - 2 * STEP - height
+            self.foot.lay_out(pygame.FRect(left, foot, width, height), canvas.scale)
         self.free = pygame.FRect(0, 0, view.width, foot)
         if self.side.rows:
             wide = min(_SIDE, _MOST * view.width)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-import numpy as np
 import pygame
 
 from ai.environment import Doubles
@@ -16,12 +15,9 @@ from game.drawing.tokens import INK, NIGHT0, SMALL
 from game.flight.flight import Flight
 from game.flight.outcomes import crash_reason
 from game.world.camera import ClearArea, View
-from game.world.craft import foot_place
-from game.world.stage import light_pool
 
 _CONTACT: Final = (14, 80, 46)  # steps in which the word comes, stays and goes
 _REASON: Final = (6, 200, 20)
-_GLOW: Final = 110  # steps that the light on the deck takes to spread and fade
 _ABOVE: Final = 2.0  # metres from the middle of a craft to the words
 _EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
 _HEAD, _FOOT = 96.0, 120.0  # points that words keep from the upper edge, and from the lower one
@@ -32,13 +28,12 @@ _CAPITAL: Final = 0.72  # height of a figure, in shares of its size
 _PLAIN: Final = 0.5  # opacity of a pad that is not aimed at
 _NEAR, _FAR = 2.2, 4.4  # metres from the craft within which a factor has gone, and from which it is whole
 _SHADE: Final = 0.62  # behind a factor, over paths and the dawn
-_EASE: Final = 0.08  # share of the remaining difference, per step
 
 
 class Callouts:
     """Callouts of one flight; call `follow` once after every step.
 
-    While `calm` (reduced motion), words appear at once, and without light.
+    While `calm` (reduced motion), words appear at once.
     """
 
     def __init__(self, env: LanderEnv, reduced_motion: bool = False) -> None:
@@ -64,22 +59,6 @@ class Callouts:
         if crashed and not self._was_over:
             self._crash, self._contact = 0, -1
         self._was_down, self._was_over = down, bool(env.outcome[0] != Outcome.FLYING)
-
-    def draw_light(self, canvas: Canvas, view: View, pose: Doubles) -> None:
-        """Draw light that runs along the deck from both feet; with reduced motion, nothing."""
-        if not 0 <= self._contact < _GLOW or self.calm:
-            return
-        gone = self._contact / _GLOW
-        x, y, angle = pose.tolist()
-        reach = (0.9 + 2.4 * (1 - (1 - gone) ** 3)) * view.pixels_per_metre
-        level = math.ceil(30 * (1 - gone) ** 1.3)
-        light = pygame.transform.smoothscale(light_pool(level, INK), (2 * round(reach), round(0.22 * reach) + 6))
-        for side in (-1, 1):
-            foot = foot_place(x, y, angle, side)
-            at_x, at_y = view.pixel(*foot)
-            corner = (round(at_x - light.get_width() / 2), round(at_y - light.get_height() / 2))
-            canvas.surface.blit(light, corner, special_flags=pygame.BLEND_RGB_ADD)
-            canvas.glow(view.point(*foot), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
 
     def draw_words(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Write what has happened above the craft."""
@@ -116,56 +95,28 @@ class Callouts:
         canvas.text(text, (x - width / 2 + 22, y), size=SMALL, weight="medium", colour=INK, alpha=shown)
 
 
-class PadFactors:
-    """Score factors of a flight's pads; call `follow` once after every step. A flight with one goal has none.
+def draw_factors(canvas: Canvas, view: View, flight: Flight[Any], craft: Doubles, clear: ClearArea) -> None:
+    """Write the score factors of several pads above them, or below where words stand, until the flight is over.
 
-    Attributes:
-        aimed: whether each pad is the one that is aimed at, (pads,), 0 to 1; eased.
-
+    That of the pad which is aimed at is brightest; one that the craft at (x, y) nears gives way.
     """
-
-    def __init__(self, flight: Flight[Any]) -> None:
-        self._flight = flight
-        pads = flight.env.ground.pads
-        self._pads = pads if sum(pad.factor > 0 for pad in pads) > 1 else ()
-        self.forget()
-
-    def forget(self) -> None:
-        """Show at once what is known now: another moment is shown."""
-        self.aimed = self._now()
-
-    def follow(self, calm: bool) -> None:
-        """Ease towards what is so after a step, or, while `calm`, take it over at once."""
-        self.aimed = self.aimed + (1.0 if calm else _EASE) * (self._now() - self.aimed)
-
-    def _now(self) -> Doubles:
-        env = self._flight.env
-        aimed: Doubles = np.eye(len(env.ground.pads))[int(env.target[0])]
-        return aimed
-
-    def draw(self, canvas: Canvas, view: View, craft: Doubles, clear: ClearArea) -> None:
-        """Write each factor above its pad, or below where words stand, until the flight is over.
-
-        One that the craft at (x, y) nears gives way.
-        """
-        if self._flight.over:  # the card says what was earned, and may stand there
-            return
-        shift = float(self._flight.env.pad_shift[0])
-        metre = view.pixels_per_metre / view.scale
-        for pad, aimed in zip(self._pads, self.aimed.tolist(), strict=False):
-            if not pad.factor:  # nothing is earned there
-                continue
-            x, deck = view.point(pad.x + shift, pad.top)
-            word = f"×{pad.factor}"
-            width, rise = canvas.text_width(word, size=_TALL, weight="medium"), _CAPITAL * _TALL
-            row = deck - _OVER_DECK[0] * metre - _OVER_DECK[1]
-            box = pygame.FRect(x - width / 2 - 7, row - rise - 6, width + 14, rise + 12)
-            if box.top < clear.head or box.right > clear.right:
-                lower = deck + _UNDER_DECK[0] * metre + _UNDER_DECK[1] - row
-                box, row = box.move(0, lower), row + lower
-            away = math.dist(view.points(craft[:2]).tolist(), box.center) / metre
-            seen = min(max((away - _NEAR) / (_FAR - _NEAR), 0.0), 1.0)
-            if seen > 0:
-                canvas.pill(box, NIGHT0, _SHADE * seen)
-                bright = seen * (_PLAIN + (1 - _PLAIN) * aimed)
-                canvas.text(word, (x, row), size=_TALL, colour=INK, weight="medium", align="centre", alpha=bright)
+    env = flight.env
+    pads = [(number, pad) for number, pad in enumerate(env.ground.pads) if pad.factor]
+    if flight.over or len(pads) < 2:  # the card says what was earned, and may stand there
+        return
+    shift, metre = float(env.pad_shift[0]), view.pixels_per_metre / view.scale
+    for number, pad in pads:
+        x, deck = view.point(pad.x + shift, pad.top)
+        word = f"×{pad.factor}"
+        width, rise = canvas.text_width(word, size=_TALL, weight="medium"), _CAPITAL * _TALL
+        row = deck - _OVER_DECK[0] * metre - _OVER_DECK[1]
+        box = pygame.FRect(x - width / 2 - 7, row - rise - 6, width + 14, rise + 12)
+        if box.top < clear.head or box.right > clear.right:
+            lower = deck + _UNDER_DECK[0] * metre + _UNDER_DECK[1] - row
+            box, row = box.move(0, lower), row + lower
+        away = math.dist(view.points(craft[:2]).tolist(), box.center) / metre
+        seen = min(max((away - _NEAR) / (_FAR - _NEAR), 0.0), 1.0)
+        if seen > 0:
+            canvas.pill(box, NIGHT0, _SHADE * seen)
+            bright = seen * (1.0 if number == env.target[0] else _PLAIN)
+            canvas.text(word, (x, row), size=_TALL, colour=INK, weight="medium", align="centre", alpha=bright)

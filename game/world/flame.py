@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
 from typing import Final
 
 import numpy as np
 import pygame
 
 from ai.environment import Doubles
-from game.drawing.paint import PIECE, light
-from game.drawing.paint_cache import InPieces, Steps
+from game.drawing.paint import light
 from game.drawing.tokens import Colour
 
 LEVELS: Final = 8
@@ -62,19 +60,6 @@ def _turned(kind: Plume, level: int, flicker: int, half_degrees: int) -> tuple[p
     right, down = left - upright.get_width() / 2, top - upright.get_height() / 2
     cos, sin = math.cos(math.radians(half_degrees / 2)), math.sin(math.radians(half_degrees / 2))
     return fire, (fire.get_width() / 2 + right * cos + down * sin, fire.get_height() / 2 - right * sin + down * cos)
-
-
-@lru_cache(maxsize=1)
-def begin_flames() -> InPieces[None]:
-    """Begin to paint what fires look like, a few in a frame, before there is one."""
-    return InPieces(_paint_flames)
-
-
-def _paint_flames(share: float) -> Steps[None]:
-    for level, flicker in product(range(1, LEVELS + 1), range(FLICKERS)) if share == 1 else ():
-        for kind in (HUMAN_PLUME, NET_PLUME, JET):
-            _paint(kind, _FINE, 0, level, flicker)
-            yield PIECE // 3  # a small picture, but it takes as long
 
 
 def plumes(

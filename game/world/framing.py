@@ -9,7 +9,6 @@ import numpy as np
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.sensing import NEAR, near_edges
-from game.drawing.tokens import VIEW_SIZE
 from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, CameraTarget, ClearArea
 
 ALL: Final = ClearArea()
@@ -41,12 +40,11 @@ def framed(env: LanderEnv, clear: ClearArea = ALL) -> CameraTarget:
     return CameraTarget.around(left, right, top, clear)
 
 
-def whole(path: Doubles) -> CameraTarget:
-    """Return a shot of the whole path (k, 2) of a finished flight: the view at rest, widened as far as needed."""
+def whole(path: Doubles, clear: ClearArea) -> CameraTarget:
+    """Return a shot of the whole path (k, 2) of a finished flight in the clear screen, no nearer than at rest."""
     (left, _), (right, top) = (path.min(axis=0) - _AROUND).tolist(), (path.max(axis=0) + _AROUND).tolist()
-    zoom = min(1.0, CameraTarget.around(left, right, top, ALL).zoom)
-    half = VIEW_SIZE[0] / (2 * POINTS_PER_METRE * zoom)
-    return CameraTarget(min(max(0.0, right - half), left + half), zoom).on_land()
+    spare = max(0.0, (clear.right - clear.left) / POINTS_PER_METRE - (right - left)) / 2
+    return CameraTarget.around(left - spare, right + spare, top, clear)
 
 
 def follow(camera: Camera, env: LanderEnv, clear: ClearArea = ALL) -> None:

@@ -24,7 +24,6 @@ _TRAIL_STRIDE: Final = 6  # steps between points of a trail
 _FINEST: Final = 40  # points of a trail that is done: it is smooth, and there are many to draw
 _STRETCH: Final = 12  # points of a trail drawn in one colour
 _PLACES: Final = 18  # of the path without thrust in a step, so that it is complete after a few
-_FADE: Final = 0.6  # below the words at the head, in their height: where a line fades in
 
 
 def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, head: float = 0.0) -> None:
@@ -63,7 +62,7 @@ class Trails:
         self._open: list[list[tuple[float, float]]] = [[] for _ in range(count)]
         self._done: deque[_Trail] = deque(maxlen=keep)
         self._keep = keep
-        self._fade = 0.1 ** (1 / keep)
+        self._fade = 0.1 ** (1 / max(1, keep))
         self._stride = stride
         self._step = 0
 
@@ -113,20 +112,17 @@ def _thinned(points: Doubles) -> Doubles:
 def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float, head: float = 0.0) -> None:
     """Draw a line as if translucent: each stretch is blended with the colour under its middle.
 
-    It fades out towards the uppermost `head` pixels, where text stands.
+    It ends below the uppermost `head` pixels, where text stands.
     """
-    places = points.tolist()
-    area = surface.get_rect()
-    start = 0
-    while start < len(places) - 1:
-        fades = head > 0 and places[start][1] < head * (1 + _FADE)
-        stretch = places[start : start + (1 if fades else _STRETCH) + 1]
-        start += len(stretch) - 1
+    places, seen = points.tolist(), surface.get_clip()
+    area = seen.clip((0, head, *surface.get_size()))
+    surface.set_clip(area)
+    for start in range(0, len(places) - 1, _STRETCH):
+        stretch = places[start : start + _STRETCH + 1]
         x, y = stretch[len(stretch) // 2]
-        shown = strength * min(max((y / head - 1) / _FADE, 0.0), 1.0) if fades else strength
-        if shown > 0 and area.collidepoint(x, y):
-            under = surface.get_at((int(x), int(y)))
-            draw_stretch(surface, under.lerp(colour, shown), stretch)
+        if area.collidepoint(x, y):
+            draw_stretch(surface, surface.get_at((int(x), int(y))).lerp(colour, strength), stretch)
+    surface.set_clip(seen)
 
 
 def draw_stretch(surface: pygame.Surface, colour: Colour | pygame.Color, places: Sequence[Point]) -> None:

@@ -8,12 +8,11 @@ import numpy as np
 
 from ai.environment import Doubles
 from ai.lander.environment import Outcome
-from game.core.clock import STEP
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
-from game.world.callouts import Callouts, PadFactors
+from game.world.callouts import Callouts, draw_factors
 from game.world.camera import WIDEST, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_edges, draw_ground
@@ -30,8 +29,8 @@ _HEAD: Final = 84.0  # points at the top into which a craft that leaves flies no
 class Scenery:
     """The world around a flight; call `follow` once after every step of it.
 
-    With reduced motion the camera rests, nothing shakes, and stars and lamps are still. Decoration has a random
-    generator of its own: a flight never depends on what is drawn.
+    With reduced motion the camera rests and nothing shakes. Decoration has a random generator of its own: a flight
+    never depends on what is drawn.
 
     Attributes:
         calm: whether motion is reduced.
@@ -46,8 +45,6 @@ class Scenery:
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._callouts = Callouts(flight.env, reduced_motion)
-        self._factors = PadFactors(flight)
-        self._time = 0.0
         self._camera = Camera()
         self.cut()
 
@@ -86,22 +83,15 @@ class Scenery:
         flight = self._flight
         self.stage.forget()
         self._callouts.forget()
-        self._factors.forget()
         self.stage.thrust[0] = 0.0 if flight.over else flames(flight.env)[0]
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
         self.cut()
-
-    def animate(self) -> None:
-        """Advance by 1/60 s all that moves whether or not anything flies."""
-        if not self.calm:
-            self._time += STEP
 
     def follow(self, ended: bool, shot: CameraTarget | None = None) -> None:
         """Follow one step; `ended` is whether the flight ended with it. A `shot` replaces the flight's own."""
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
         self._callouts.follow()
-        self._factors.follow(self.calm)
         if self.calm:
             self._keep_in_view()
             return
@@ -115,17 +105,12 @@ class Scenery:
         """Return the camera's view, `alpha` of the way from the last step to this one."""
         return self._camera.view(scale, alpha)
 
-    def shot_of(self, path: Doubles) -> CameraTarget:
-        """Return a shot of a whole path (k, 2); with reduced motion, the resting shot."""
-        return self._camera.shot if self.calm else framing.whole(path)
-
     def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
         """Fill the view with sky and land; `earth` is where the Earth stands, in points."""
         env = self._flight.env
-        moon = landscape(canvas.surface.get_size(), self.calm, self._look)
-        moon.draw(canvas, self._camera, self._time, alpha, earth)
+        landscape(canvas.surface.get_size(), self._look).draw(canvas, self._camera, alpha, earth)
         view = self.view(canvas.scale, alpha).filling(canvas)
-        draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
+        draw_ground(canvas, view, env.ground, float(env.pad_shift[0]))
         draw_edges(canvas, view, env, canvas.palette.warn)
         if env.conditions.pushes and not self.calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
@@ -138,13 +123,12 @@ class Scenery:
         Where a craft has left the area is a cross.
         """
         view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
-        self._factors.draw(canvas, view, pose, self.clear)
+        draw_factors(canvas, view, self._flight, pose, self.clear)
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
-        self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
-        self.stage.draw_dust(canvas, view, alpha)
+        self.stage.particles.draw(canvas.surface, view, alpha)
         shown = self.stage.pose_after(alpha)
         if words:
             self._callouts.draw_words(canvas, view, pose if shown is None else shown)

@@ -21,9 +21,8 @@ from game.flight.foresight import surface_height
 from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import STAND, draw_craft, draw_fires, foot_place, scaling, shaded, stand
-from game.world.flame import begin_flames
 from game.world.landscape.wind import Wind
-from game.world.particles import DUST, Particles, Relief
+from game.world.particles import DUST, Particles
 from game.world.wreck import Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
@@ -32,7 +31,6 @@ _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
-_SAGS: Final = (0.35, 0.30)  # metres and radians by which an upright wreck sinks onto its hull
 _WRECK_DETAIL: Final = 0.6  # resolution of a wreck, of what the closest view would need
 
 
@@ -65,8 +63,7 @@ class Stage:
         self._env = env
         self._rng = rng
         self.calm, self._light = reduced_motion, light
-        self._relief = Relief(env)
-        self.particles, self.wind = Particles(rng, self._relief, env.gravity, dust), Wind(env, dust)
+        self.particles, self.wind = Particles(rng, env, dust), Wind(env, dust)
         count = env.num_envs
         self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
         self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between during a handover
@@ -75,7 +72,6 @@ class Stage:
         self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
         self._after: Wreck | None = None
         self._flicker = 0
-        begin_flames()
         self._down = np.zeros(2, bool)
         self._fall = 0.0
 
@@ -98,7 +94,7 @@ class Stage:
         if env.num_envs == 1:
             self._follow_one(bool(ended[0]))
         self.wind.follow()
-        self.particles.gravity, self.particles.wind = env.gravity, self.wind.speed
+        self.particles.wind = self.wind.speed
         self.particles.update()
 
     def forget(self) -> None:
@@ -190,18 +186,15 @@ class Stage:
         self._draw_ground_light(canvas, view, x, y, angle, slot)
         floor = view.pixel(x, surface_height(self._env, x))[1] + 2
         if sprite.image == art.WRECK:
-            self._draw_wreck(canvas, view, sprite, pose, slot)
+            self._draw_wreck(canvas, view, sprite, pose)
         else:
             fire = self.thrust[slot], float(self.blue[slot]), self._flicker
             draw_craft(canvas, view, sprite.image, pose, *fire, art.share(sprite), floor, self._light)
         self._draw_flash(canvas, view, x, y, slot)
 
-    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
-        """Draw the dark wreck of a crash; one that does not tumble sags to the side of its broken leg."""
+    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles) -> None:
+        """Draw the dark wreck of a crash."""
         x, y, angle = pose.tolist()
-        if self._after is None:
-            sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
-            y, angle = y - _SAGS[0] * sag * max(0.0, math.cos(angle)), angle - _SAGS[1] * sag
         size = art.share(sprite)
         middle = view.pixel(*stand(x, y, angle, size))
         # A new picture for each degree that it tumbles, none of them seen from as near as a craft in flight.
@@ -215,10 +208,6 @@ class Stage:
     def draw_fires(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
         """Draw the flames of those whose main engine burns."""
         draw_fires(canvas, view, poses[shown & (self.thrust[:, 0] > 0.25)], self._flicker, size)
-
-    def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
-        """Draw dust, sparks and fragments."""
-        self.particles.draw(canvas.surface, view, alpha)
 
     def _draw_shadow(self, canvas: Canvas, view: View, x: float, y: float, angle: float) -> None:
         metre = view.pixels_per_metre
@@ -249,7 +238,7 @@ class Stage:
             colour = mix(HUMAN, NET, round(float(self.blue[slot]) * 4) / 4)
             metre = view.pixels_per_metre
             size = (2 * round((2.0 + 0.25 * reach) * metre), 2 * round(0.42 * metre))
-            pool = pygame.transform.smoothscale(light_pool(level, colour), size)
+            pool = pygame.transform.smoothscale(_light_pool(level, colour), size)
             _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
@@ -280,18 +269,8 @@ def _shade(level: int) -> pygame.Surface:
 
 
 @lru_cache(maxsize=128)
-def light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
+def _light_pool(level: int, colour: Colour) -> pygame.Surface:
     """Return a disc of light, to be squeezed flat and added; `level` is in 1/12."""
-    pool = _white_pool().copy()
-    pool.fill([round(part * min(level, 12) / 12) for part in colour], special_flags=pygame.BLEND_RGB_MULT)
-    if level > 12:
-        pool.blit(light_pool(level - 12, colour), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
-    return pool
-
-
-@lru_cache(maxsize=1)
-def _white_pool() -> pygame.Surface:
     axis = np.linspace(-1, 1, 97)
-    away = np.clip(1 - np.hypot(axis[None, :], axis[:, None]), 0, 1)
-    shine = 255 * (0.34 * away**2 + 0.42 * away**6)
-    return light(np.repeat(shine[..., None], 3, axis=2))
+    away = np.clip(1 - np.hypot(axis[None, :], axis[:, None]), 0, 1)[..., None]
+    return light((0.34 * away**2 + 0.42 * away**6) * np.array(colour) * level / 12)

@@ -68,7 +68,6 @@ class LearningSwarm:
         self._before: Doubles = np.empty((0, 3))
         self._now: Doubles = self._before
         self._since = self._gap = 1.0
-        self._time = 0.0
         self._frame = 0
         self._lucky = 0
 
@@ -104,11 +103,9 @@ class LearningSwarm:
         return nearest if away[nearest] <= _REACH else None
 
     def update(self, still: bool = False) -> None:
-        """Advance by 1/60 s; while `still`, lamps and flames do not flicker."""
+        """Advance by 1/60 s; while `still`, flames do not flicker."""
         self._since += 1
-        if not still:
-            self._time += 1 / 60
-            self._frame += 1
+        self._frame += not still
 
     def draw(self, canvas: Canvas, alpha: float, paused: bool = False) -> None:
         """Draw the moon, the pad and the landers."""
@@ -118,7 +115,7 @@ class LearningSwarm:
         below = round(_BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale)
         pixels = max(_SMALLEST, area.width), max(_SMALLEST, area.height + below)  # a tiny window shows a part of it
         canvas.surface.blit(_moon(pixels).picture, area)
-        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
+        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width)
         if self.swarm_state is None:
             canvas.surface.set_clip(None)
             return
@@ -174,7 +171,7 @@ class _Moon:
     """The landscape behind a swarm, dimmed: rough at once, and painted again until it is whole."""
 
     def __init__(self, size: tuple[int, int]) -> None:
-        self._land = Backdrop(size, np.random.default_rng(_MOON), reduced_motion=True)
+        self._land = Backdrop(size, np.random.default_rng(_MOON))
         self._picture, self._veil = pygame.Surface(size), pygame.Surface(size)
         self._veil.fill(NIGHT0)
         self._veil.set_alpha(90)

@@ -58,6 +58,7 @@ def test_what_is_no_convex_polygon_or_circle_is_refused():
         ([(0, 0), (1, 0), (2, 0), (1, 1)], "in line"),
         ([(0, 0), (0, 0), (1, 0), (0, 1)], "distinct"),
         ([(0, 0), (2, 0), (0.5, 0.5), (0, 2)], "convex"),
+        ([(np.cos(a), np.sin(a)) for a in np.arange(5) * 4 * np.pi / 5], "cross"),
     ]:
         with pytest.raises(ValueError, match=reason):
             Polygon(corners)

@@ -28,7 +28,7 @@ def begun(seed: int, network: Any = None, spawn: str = "random", *, shares: bool
 
 def concluded(challenge: Any, flight: Flight[Crew], card: OutcomeCard | None = None, **card_with: Any) -> OutcomeCard:
     """The card of a flight that has ended and is flown as that challenge, with what it adds."""
-    card = card or replace(outcome_card(flight.env, flight.share), **card_with)
+    card = card or replace(outcome_card(flight.env), **card_with)
     rest = {"keep": lambda *_: None, "context": SimpleNamespace(apply_settings=lambda: None)}
     flown = SimpleNamespace(flight=flight, credit=Credit(flight, Settings(), challenge.rules), **rest)
     challenge.ended(flown)

@@ -42,7 +42,6 @@ WHO = {
     "The network flies": "network",
     "The network flies.  Tab  takes back": "network",
 }
-WHO |= {line: "network" if name == "ALONE" else "both" for name, line in texts.COPILOT_PANEL_WHY.items()}
 FLEW = {texts.YOU_FLEW: "you", "The network flew": "network"}
 COUNTS = [
     *texts.MEDALS[1:],

@@ -20,7 +20,7 @@ from game.training.library import called
 from game.ui.widget import RowWidget, mix
 
 _ROW: Final = 22.0
-_LARGE, _SMALL = 124.0, 48.0  # sizes of a digit
+_LARGE: Final = 124.0  # size of a digit
 _HEIGHT: Final = 128.0
 _INDENT: Final = 20.0  # of words after a mark
 
@@ -88,7 +88,7 @@ def write_legend(cursor: Cursor, words: Iterable[tuple[str, Colour]]) -> None:
 
 
 def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:
-    """Write a network's answer large, and the other networks' answers small."""
+    """Write a network's answer large, and below what the other reads."""
     verdict, top = reading.verdict(name), cursor.y
     if verdict is Verdict.EMPTY:
         cursor.styled(texts.DIGITS_EMPTY, TITLE)
@@ -102,7 +102,6 @@ def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:
     if canvas := cursor.canvas:
         words, colour = (str(first), INK) if sure else ("?", MUTE)
         canvas.text(words, (box.left - 6, box.bottom - 20), size=_LARGE, weight="extralight", colour=colour)
-    _write_others(cursor, box, reading, name)
     palette = cursor.palette
     marks: dict[Verdict, tuple[Shape, str, Colour]] = {
         Verdict.SURE: ("check", texts.DIGITS_SURE, palette.good),
@@ -121,17 +120,7 @@ def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:
         cursor.aside(texts.DIGITS_TOO_LITTLE)
     else:
         cursor.aside(texts.DIGITS_EITHER.format(digit=first, percent=share, other=second, other_percent=other))
-
-
-def _write_others(cursor: Cursor, box: pygame.FRect, reading: Reading, name: str) -> None:
-    """Write what the other networks read beside the answer, small."""
-    if (canvas := cursor.canvas) is None:
-        return
     for other in reading.probabilities.keys() - {name}:
-        first, _ = best_two(reading.probabilities[other])
-        sure = reading.verdict(other) is not Verdict.UNSURE
-        words = certainty(float(reading.probabilities[other][first])) if sure else texts.DIGITS_UNSURE
-        canvas.text(called(other), (box.right, box.top + 34), size=LABEL, colour=MUTE, align="right")
-        figure = str(first) if sure else "?"
-        canvas.text(figure, (box.right, box.bottom - 38), size=_SMALL, weight="light", colour=MUTE, align="right")
-        canvas.text(words, (box.right, box.bottom - 16), size=SMALL, colour=MUTE, align="right", tabular=True)
+        best = int(reading.probabilities[other].argmax())
+        words = texts.DIGITS_UNSURE if reading.verdict(other) is Verdict.UNSURE else f"{best}"
+        cursor.aside(f"{called(other)}: {words}")

@@ -14,13 +14,9 @@ from game.digits import certainty
 from game.digits.pictures import picture
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import SMALL
-from game.input.controls import Command
-from game.ui.actions import Action
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
-    from game.ui.actions import Table
-    from game.ui.context import Context
     from game.ui.panel import Panel
 
 _COLUMNS: Final = 5
@@ -32,20 +28,10 @@ _FAINTEST: Final = 0.3  # least peak brightness for scaling: dimmer images stay 
 class DreamsTab:
     """Dreams of all ten digits, which go on a step a frame."""
 
-    def __init__(self, context: Context, classifier: DigitClassifier) -> None:
-        self._context, self._classifier = context, classifier
-        self.restart()
-
-    def restart(self) -> None:
-        """Begin all dreams anew."""
-        seed = int(self._context.rng.integers(1 << 31))
+    def __init__(self, classifier: DigitClassifier) -> None:
         self.dreams = [
-            ActivationMaximisation(self._classifier, digit, np.random.default_rng((seed, digit)))
-            for digit in range(DIGITS)
+            ActivationMaximisation(classifier, digit, np.random.default_rng(digit)) for digit in range(DIGITS)
         ]
-
-    def actions(self) -> Table:
-        return [Action(Command.RETRY, self.restart, texts.DREAMS_AGAIN)]
 
     def update(self) -> None:
         dream = min(self.dreams, key=lambda each: each.step)

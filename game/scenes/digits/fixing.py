@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import shutil
-import time
 from pathlib import Path
-from typing import Final
 
 from ai.digits.fix import Fixed, FixStep, fix
 from ai.digits.preprocessing import Image
@@ -13,8 +11,6 @@ from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.training.library import models_by_name
 from game.training.run_kind import DIGITS
-
-_UNDONE: Final = ".undone"  # suffix of an undone fix's folder until it is removed
 
 
 class FixRunner:
@@ -89,10 +85,8 @@ class FixRunner:
         if not kept or self.busy:
             return False
         self.fixed, self.problem = None, ""
-        aside = kept[-1].with_name(f"{_UNDONE}{time.time_ns()}")
         try:
-            kept[-1].rename(aside)  # atomic, so that no half-removed fix is ever read
-            shutil.rmtree(aside, ignore_errors=True)
+            shutil.rmtree(kept[-1])  # one that is half removed is passed over as a damaged one
         except OSError as error:
             self.problem = texts.FIX_NOT_UNDONE.format(problem=error.strerror or error)
             return False

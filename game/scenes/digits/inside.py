@@ -10,6 +10,7 @@ from game.core import texts
 from game.scenes.digits.dreams import DreamsTab
 from game.scenes.digits.sums_tab import SumsTab
 from game.scenes.digits.why_not import WhyNotTab
+from game.ui.actions import digit_actions
 from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
@@ -35,15 +36,17 @@ class DigitInsideScene(PanelScene):
         image = np.asarray(image, np.float32)
         self.why_not = WhyNotTab(classifier, image, self.build)
         self.sums = SumsTab(classifier, image, self.build)
-        self.dreams = DreamsTab(context, classifier)
+        self.dreams = DreamsTab(classifier)
         self.tab: WhyNotTab | SumsTab | DreamsTab = self.why_not
         self.build()
 
     def actions(self) -> Table:
-        return [self.form.goes_back(texts.HINT_BACK), *self.tab.actions()]
+        digits = digit_actions(self.why_not.ask) if self.tab is self.why_not else ()
+        return [self.form.goes_back(texts.HINT_BACK), *digits]
 
     def update(self) -> Transition | None:
-        self.tab.update()
+        if not isinstance(self.tab, SumsTab):
+            self.tab.update()
         return super().update()
 
     def describe(self, panel: Panel) -> None:

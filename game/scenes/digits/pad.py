@@ -47,11 +47,6 @@ class DrawingPad:
         self._ink = _Ink(1)
 
     @property
-    def empty(self) -> bool:
-        """Whether nothing is drawn."""
-        return not self._strokes
-
-    @property
     def strokes(self) -> list[npt.NDArray[np.float64]]:
         """The strokes, each as (n, 2) units from the pad's upper left corner, y down."""
         return [np.array(stroke.path) for stroke in self._strokes]
@@ -70,9 +65,6 @@ class DrawingPad:
             case pygame.MOUSEBUTTONUP if event.button == 1 and self.drawing:
                 self._go_on(event.pos)
                 self.drawing = False
-            case pygame.WINDOWFOCUSLOST:
-                self.drawing = False
-                return False
             case _:
                 return False
         return True
@@ -208,14 +200,9 @@ class _Ink:
         alpha[left:right, top:bottom] = (self._cover[top:bottom, left:right] * 255.5).astype(np.uint8).T
 
 
-def side_in(width: float) -> float:
-    """Return the side, in points, of a pad, or of a picture of one digit, in a column of that width."""
-    return min(width, _LARGEST)
-
-
 def pen_row(pad: DrawingPad) -> PictureRow:
     """Return the row of a pad, for the mouse and for a virtual pointer."""
     return PictureRow(
-        texts.POINTER, side_in, pad.handle_event,
+        texts.POINTER, lambda width: min(width, _LARGEST), pad.handle_event,
         lambda canvas, _: pad.draw(canvas), square=True, hold=texts.PEN_HOLD, leave=texts.PEN_LEAVE, pace=_PACE,
     )  # fmt: skip

@@ -5,15 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-import numpy as np
 import pygame
 
 from ai.digits.classifier import DIGITS
-from ai.digits.preprocessing import Image, stages
+from ai.digits.preprocessing import stages
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import certainty
-from game.digits.pictures import AMBER, Numbers, framed, picture
+from game.digits.pictures import AMBER, Numbers, Picture, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
@@ -33,7 +32,7 @@ _LEAST, _APART = 170.0, 32.0  # points: the narrowest pad that stands beside its
 _ANSWER: Final = 130.0  # points for the answer beside its reasons
 _MORE: Final = "digits"  # name in the settings of what stays open
 _WHY: Final = 300.0  # side of a picture
-_TILE: Final = 52.0
+_TILE: Final = 80.0
 
 
 class DigitsScene(PanelScene):
@@ -50,7 +49,7 @@ class DigitsScene(PanelScene):
         super().__init__(context)
         self.pad = DrawingPad()
         self.live = LiveReading(self.pad, chosen)
-        self._why, self._stages = PaintCache(), PaintCache()
+        self._why, self._stages = Picture(AMBER), PaintCache()
         self._fix_of = -1  # revision of the drawing that was fixed last
         self.fixing = FixRunner(context.user_dir, context.models_dir)
         for name in dict.fromkeys((*NAMES, chosen)):
@@ -100,7 +99,7 @@ class DigitsScene(PanelScene):
         return [
             self.form.goes_back(texts.HINT_BACK),
             Action(pygame.K_z, self.pad.undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
-            *(Action(key, self.pad.clear) for key in (Command.CHOICES, Command.RETRY, pygame.K_DELETE)),
+            Action(Command.RETRY, self.pad.clear),
             *digit_actions(self._correct),
         ]
 
@@ -169,7 +168,7 @@ class DigitsScene(PanelScene):
         size = min(cursor.width, _WHY)
         box = cursor.take(size)
         if self._drawn and cursor.canvas and why is not None:
-            self._why.draw(cursor.canvas, (box.left, box.top, size, size), why.tobytes(), framed(why, AMBER))
+            self._why.draw(cursor.canvas, box, why)
         write_legend(cursor, zip(legend, (HUMAN, MUTE), strict=False))
 
     @property
@@ -178,8 +177,17 @@ class DigitsScene(PanelScene):
         return self.reading.verdict(self.chosen) is not Verdict.EMPTY
 
     def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
-        reading, tile = self.reading, min(_TILE, box.width / 6)
-        self._stages.draw(canvas, box, reading, lambda sheet: _paint_stages(sheet, self.pad.ink(), reading.image, tile))
+        """Draw ink in its box, with strokes as wide as MNIST's, and by its centre of mass, which is read."""
+        reading, tile = self.reading, min(_TILE, box.width / 4)
+
+        def paint(sheet: Canvas) -> None:
+            prepared = stages(self.pad.ink())
+            for number, image in enumerate((prepared.fitted, prepared.thinned, reading.image)):
+                area = sheet.rect(1.2 * number * tile, 0, tile, tile)
+                sheet.surface.blit(picture(image, area.size), area)
+                pygame.draw.rect(sheet.surface, LINE, area, 1)
+
+        self._stages.draw(canvas, box, reading, paint)
 
     # Networks
 
@@ -231,19 +239,6 @@ def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
         return texts.DIGITS_NOT_FIXED, fixing.problem
     if fixed is None or not same:
         return texts.DIGITS_FIX_HOW, ""
-    if not fixed.steps:
-        return texts.DIGITS_FIX_NEEDLESS.format(digit=fixed.digit), ""
     before, now = map(certainty, fixed.probability)
     first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
     return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
-
-
-def _paint_stages(sheet: Canvas, ink: Image, read: Image, tile: float) -> None:
-    """Draw how ink is prepared, and last what the network reads."""
-    for number, image in enumerate((*stages(ink)[:-1], read)):
-        area = sheet.rect(1.2 * number * tile, 0, tile, tile)
-        side = max(image.shape)
-        square = np.pad(image, [((side - length) // 2, (side - length + 1) // 2) for length in image.shape])
-        scaled = pygame.transform.smoothscale if side > area.width else pygame.transform.scale
-        sheet.surface.blit(scaled(picture(square, (side, side)).convert(24), area.size), area)
-        pygame.draw.rect(sheet.surface, LINE, area, 1)

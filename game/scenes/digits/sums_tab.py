@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -10,22 +11,20 @@ import pygame
 
 from ai.explain.unit_sums import Box
 from game.core import texts
-from game.digits.pictures import GREY, SIGNED, Numbers, framed
+from game.digits.pictures import GREY, SIGNED, Numbers, Picture
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import HUMAN
-from game.scenes.digits.cells import Cells
+from game.scenes.digits.map_row import MapRow
 from game.scenes.digits.sums import describe_sum
 from game.scenes.digits.unit_walk import UnitWalk, sentence_of
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
     from ai.digits.preprocessing import Image
-    from game.ui.actions import Table
     from game.ui.panel import Column, Panel
 
 _LEAST: Final = 280.0
-_READ, _GIVEN, _SEEN = 230.0, 170.0, 100.0  # heights of pictures
+_SEEN: Final = 100.0  # height of the digit
 
 
 class SumsTab:
@@ -39,13 +38,7 @@ class SumsTab:
     def __init__(self, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
         self._image, self._build = image, build
         self.walk = UnitWalk(classifier, image)
-        self._seen = PaintCache()
-
-    def actions(self) -> Table:
-        return []
-
-    def update(self) -> None:
-        """Nothing here goes on by itself."""
+        self._seen = Picture()
 
     def choose(self, number: int) -> None:
         """Look at another stage."""
@@ -79,42 +72,47 @@ class SumsTab:
 
     def _describe_read(self, column: Column) -> None:
         walk, stage, first = self.walk, self.walk.stage, self.walk.number == 0
-        height, width, count = stage.inputs.shape
-        if max(height, width) == 1:
-            return
         maps: Numbers = np.moveaxis(stage.inputs if first else _signed(stage.inputs), 2, 0)
+        if maps[0].size == 1:
+            return
+        label = texts.PATCH_PICTURES["digit" if first else "map"]
+        column.add(lambda cursor: cursor.caption(label.format(number=walk.channel + 1, count=len(maps))))
 
-        def window() -> Box:
+        def lit() -> Box:
             row, across, _ = walk.place
             return stage.read_by((row, across, row + 1, across + 1))
 
-        label = texts.PATCH_PICTURES["digit" if first else "map"]
-        column.add(lambda cursor: cursor.caption(label.format(number=walk.channel + 1, count=count)))
-        shades = GREY if first else SIGNED
-        column.widget(Cells(lambda: maps[walk.channel, None], window, self._point_at_input, _READ, shades))
+        column.widget(MapRow(lambda: maps[walk.channel], lit, self._point_at_input, GREY if first else SIGNED))
         column.gap()
 
     def _describe_given(self, column: Column) -> None:
+        """Add a slider over all maps, or units, that the layer gave, and the map."""
         walk = self.walk
         maps: Numbers = np.moveaxis(_signed(walk.stage.outputs), 2, 0)
-        label = texts.PATCH_PICTURES["map" if maps[0].size > 1 else "units"]
-        column.add(lambda cursor: cursor.caption(label.format(number=walk.place[2] + 1, count=len(maps))))
+        words = texts.PATCH_PICTURES["map" if maps[0].size > 1 else "units"]
+        figure = partial(_counted, words, len(maps))
+        column.slider(texts.PATCH_GAVE, walk.place[2], (0, len(maps) - 1), self._turn_to, step=1, figure=figure)
 
-        def window() -> Box:
-            return 0, walk.place[2], 1, walk.place[2] + 1
+        def lit() -> Box:
+            row, across, _ = walk.place
+            return row, across, row + 1, across + 1
 
-        def choose(_: int, number: int) -> None:
-            walk.look_at((*walk.place[:2], number))
+        if maps[0].size > 1:
+            column.widget(MapRow(lambda: maps[walk.place[2]], lit, lambda *at: walk.look_at((*at, walk.place[2]))))
 
-        column.widget(Cells(lambda: maps, window, choose, _GIVEN))
+    def _turn_to(self, channel: float) -> None:
+        self.walk.look_at((*self.walk.place[:2], round(channel)))
 
     def _draw_digit(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the digit, and which part of it the unit depends on."""
-        side = min(box.size)
-        self._seen.draw(canvas, (*box.topleft, side, side), side, framed(self._image))
-        pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
+        self._seen.draw(canvas, box, self._image)
+        pixel, (above, beside, below, right) = min(box.size) / self._image.shape[0], self.walk.field
         corner = (box.left + beside * pixel, box.top + above * pixel)
         canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
+
+
+def _counted(words: str, count: int, number: float) -> str:
+    return words.format(number=round(number) + 1, count=count)
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -12,19 +12,16 @@ from ai.digits.preprocessing import SIDE, Image
 from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
 from game.digits import certainty
-from game.digits.pictures import SIGNED, framed, visible
+from game.digits.pictures import SIGNED, Picture, visible
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import MUTE, NET, SMALL
 from game.scenes.digits.answer import DigitBars, write_legend
 from game.scenes.digits.reader import best_two
 from game.scenes.digits.sums import figure
-from game.ui.actions import digit_actions
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
-    from game.ui.actions import Table
     from game.ui.panel import Panel
 
 _DIGIT, _MAP = 400.0, 240.0  # sides of pictures
@@ -45,7 +42,7 @@ class WhyNotTab:
 
     def __init__(self, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
         self._classifier, self._first, self._build = classifier, image, build
-        self._painted, self._map = PaintCache(), PaintCache()
+        self._painted, self._map = Picture(), Picture(SIGNED)
         self.asked = best_two(classifier.predict(image)[0])[1]
         self._set_image(image)
 
@@ -54,9 +51,6 @@ class WhyNotTab:
         self.asked = digit
         self._compare()
         self._build()
-
-    def actions(self) -> Table:
-        return list(digit_actions(self.ask))
 
     def update(self) -> None:
         if self.contrast and not self.contrast.done and self.contrast.advance():
@@ -143,9 +137,8 @@ class WhyNotTab:
 
     def _draw_image(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the digit, with both squares of ink in it."""
-        side = box.height
-        self._painted.draw(canvas, (*box.topleft, side, side), self.image.tobytes(), framed(self.image))
-        pixel = side / SIDE
+        self._painted.draw(canvas, box, self.image)
+        pixel = box.height / SIDE
         for change in self.changes:
             colour = NET if change.ink else canvas.palette.warn
             left = box.left + (change.column - SQUARE // 2) * pixel
@@ -154,4 +147,4 @@ class WhyNotTab:
             canvas.text("+" if change.ink else "−", (left + SQUARE * pixel + 6, top + 14), colour=colour)
 
     def _draw_map(self, canvas: Canvas, box: pygame.FRect) -> None:
-        self._map.draw(canvas, (*box.topleft, box.height, box.height), self.says.tobytes(), framed(self.says, SIGNED))
+        self._map.draw(canvas, box, self.says)

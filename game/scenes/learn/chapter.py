@@ -50,7 +50,6 @@ class Chapter(ABC):
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
-        explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
         model: what is touched.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         changed: set when it shows something else than before, or has other controls; the scene describes them anew.
@@ -60,7 +59,6 @@ class Chapter(ABC):
     key: ClassVar[str]
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
-    explains: ClassVar[bool] = False
     model: Model
 
     def __init__(self, context: Context) -> None:

@@ -22,7 +22,7 @@ from game.core.catalogue import capital
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL
+from game.drawing.tokens import HUMAN, INK, NET, NIGHT1, SMALL
 from game.explain.figures import points
 from game.explain.tables import Line, from_zero, table
 from game.flight import networks
@@ -172,7 +172,7 @@ class ChoiceChapter(Chapter):
             self._lander.follow()
 
     def why(self) -> str:
-        sentences = " ".join(
+        return " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
                 action=texts.said(ACTION_NAMES[action]),
                 value=points(float(self.model.values[action]), 1),
@@ -180,9 +180,6 @@ class ChoiceChapter(Chapter):
             )
             for action, came in self.model.results.items()
         )
-        best = self.model.results.get(self.model.best)
-        surprises = best is not None and best.points < max(came.points for came in self.model.results.values())
-        return f"{sentences} {texts.LEARN_CHOICE_SURPRISE}" if surprises else sentences
 
     def below(self, column: Column) -> None:
         column.add(table(("", *texts.LEARN_CHOICE_HEAD), self._lines))
@@ -213,8 +210,3 @@ class ChoiceChapter(Chapter):
                 start = self.model.env.position[0]
                 a, b = view.points([start, start + self.model.env.velocity[0]]).tolist()
                 canvas.line(a, b, HUMAN, 2)
-        number = texts.LEARN_CHOICE_NUMBER.format(number=self.model.number + 1, count=len(MOMENTS))
-        landed = "landed" if self.model.landed else "lost"
-        end = texts.LEARN_CHOICE_ENDS["still" if self.model.first is None else landed if self.model.over else "flying"]
-        canvas.text(number, (box.left, box.top + 14), size=SMALL, colour=MUTE)
-        canvas.text(end, (box.right, box.top + 14), size=SMALL, colour=MUTE, align="right")

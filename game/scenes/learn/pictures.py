@@ -27,7 +27,7 @@ def draw_ground(canvas: Canvas, box: pygame.FRect, view: View) -> None:
     """Draw the plain from one side of a box to the other, and the pad."""
     ((_, ground),) = view.points([(0.0, PARAMS.ground)]).tolist()
     canvas.line((box.left, ground), (box.right, ground), FAINT)
-    draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+    draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width)
 
 
 def draw_landers(

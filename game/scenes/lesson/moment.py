@@ -74,7 +74,7 @@ def _draw_moment(units: list[float], canvas: Canvas, box: pygame.FRect) -> None:
     place = np.array([units[0], units[1] + PARAMS.pad_top + PARAMS.stand])
     (x, y), across, up = view.points(place).tolist(), units[2] * _ARROW, units[3] * _ARROW
     with canvas.clipped(box):
-        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width)
         draw_craft(canvas, view, LANDER, np.array([*place, math.atan2(units[4], units[5])]), np.zeros(3), 1.0, 0, 1.5)
         canvas.line((x, y), (x + across, y - up), INK, 1.5)
 

@@ -105,7 +105,6 @@ class ReplayScene(WorldScene):
             self._fly()
         if not self.playback.stopped:
             self._heard.follow(self._scenery.stage.thrust[0])
-        self._scenery.animate()
         return super().update()
 
     # Time

@@ -8,7 +8,6 @@ from typing import Final
 import numpy as np
 
 from ai.lander.environment import LanderEnv, Outcome
-from game.core.clock import STEP
 from game.drawing.canvas import Canvas
 from game.flight.networks import Policy, decision_steps
 from game.flight.poses import Poses
@@ -91,12 +90,11 @@ class MenuBackground:
         self.stage.follow(np.ones(1, bool), np.array([self.over and not was_over]))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        time = 0.0 if self.still else (self._step + alpha) * STEP
         view = self._camera.view(canvas.scale).filling(canvas)
-        landscape(canvas.surface.get_size(), self.still, "moon").draw(canvas, self._camera, time, earth=_EARTH)
-        draw_ground(canvas, view, self.env.ground, time)
+        landscape(canvas.surface.get_size(), "moon").draw(canvas, self._camera, earth=_EARTH)
+        draw_ground(canvas, view, self.env.ground)
         self.stage.draw_lander(canvas, view, self.poses.at(alpha)[0])
-        self.stage.draw_dust(canvas, view, alpha)
+        self.stage.particles.draw(canvas.surface, view, alpha)
 
     @property
     def over(self) -> bool:

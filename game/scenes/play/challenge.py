@@ -6,7 +6,7 @@ Here are the base, and the short ones: races against ghosts, flying on from a re
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -76,25 +76,17 @@ class Rules:
     """What a flight may do and what counts; a challenge may change them as it goes on.
 
     Attributes:
-        free: whether it is a free flight, for which pads and start can be chosen.
+        free: whether it is a free flight: pads and start can be chosen, and the network's path and score are shown.
         fixed: whether there is only one start.
         kept: whether its flights are recorded in the logbook.
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
         alone: whether the network may neither help nor take over.
-        eases: whether the player's easing applies to its flights.
-        guides: whether the network's path is previewed.
         elsewhere: whether it is flown where it is not as on the moon.
-        compares: whether the card compares the flight with the ghost's.
-        shadows: whether the network flies the same start unseen, so that the card tells its score.
-        waits: whether the craft hangs until the pilot touches a control; otherwise, only until all are released.
-        holds: whether the craft goes on to hang, although it is touched, until help is turned on.
-        keeps_stick: whether the player cannot hand over the stick now.
         again: whether a finished flight restarts by itself, without a card.
         through: whether it is finished and free flights follow.
         staked: whether another start would lose more than the present flight.
         mission: whose medals can be won; None without.
         following: makes the challenge that comes after a landing; None for the way back.
-        skip: what the key for what comes next does before another flight begins; None for nothing.
 
     """
 
@@ -103,20 +95,12 @@ class Rules:
     kept: bool = True
     bar: str = ""
     alone: bool = False
-    eases: bool = False
-    guides: bool = False
     elsewhere: bool = False
-    compares: bool = True
-    shadows: bool = False
-    waits: bool = True
-    holds: bool = False
-    keeps_stick: bool = False
     again: bool = False
     through: bool = False
     staked: bool = False
     mission: Mission | None = None
     following: Callable[[], Challenge] | None = None
-    skip: Callable[[], None] | None = None
 
 
 @dataclass(frozen=True)
@@ -128,11 +112,7 @@ class Words:
         goal: its goal, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
         sentence: the one sentence of the flight; None for the usual one.
-        asides: what else is to be read while the craft waits.
-        eased: what is said before a flight that assists will set apart; empty for no more than their names.
-        copy: hint of the key that copies the text for a friend.
         next: hint of the key for what comes next; empty where it does nothing.
-        again, new: what the card calls another try, and another start; empty for the usual words.
         stake: question before another start, and what would be lost.
         result: what is copied for a friend in place of the flight's code; empty for the code.
         marks: draws the challenge's own text and marks over the world; None for none.
@@ -145,12 +125,7 @@ class Words:
     goal: str = ""
     opening: str = ""
     sentence: str | None = None
-    asides: Sequence[str] = ()
-    eased: str = ""
-    copy: str = ""
     next: str = ""
-    again: str = ""
-    new: str = ""
     stake: tuple[str, str] = ("", "")
     result: str = ""
     marks: Callable[[Canvas, View, float], None] | None = None
@@ -187,39 +162,27 @@ class Challenge:
         """Take note of a flight that has just ended, and have it kept."""
         flown.keep()
 
+    def skip(self) -> None:
+        """Do what the key for what comes next does before another flight begins: nothing."""
 
-class Duel(Challenge):
-    """Duel: one start after another against a rival's ghost, called by its name."""
 
-    def __init__(self, rival: Policy, name: str) -> None:
-        super().__init__(fixed=False)
+class Race(Challenge):
+    """Race beside a ghost, called by its name: a network's on one start after another, or a recorded flight's."""
+
+    def __init__(self, rival: Policy | Recording, name: str) -> None:
+        fixed = isinstance(rival, Recording)
+        super().__init__(fixed=fixed, elsewhere=isinstance(rival, Recording) and flown_elsewhere(rival))
         self._rival, self._name = rival, name
 
     def start(self, wanted: Wanted) -> Start:
+        if isinstance(self._rival, Recording):
+            return Start(self._rival, Ghost(replayed(self._rival), self._name))
         recording = Recording(wanted.seed, "random")
         return Start(recording, Ghost(Flight(recording, Alone(self._rival)), self._name))
 
     def words(self, flown: FlownFlight) -> Words:
-        return _beside(texts.DUEL, self._name)
-
-
-class Race(Challenge):
-    """Race: the start of a recorded flight, against its ghost."""
-
-    def __init__(self, record: Record, name: str) -> None:
-        super().__init__(elsewhere=flown_elsewhere(record.recording))
-        self._recording, self._name = record.recording, name
-
-    def start(self, wanted: Wanted) -> Start:
-        return Start(self._recording, Ghost(replayed(self._recording), self._name))
-
-    def words(self, flown: FlownFlight) -> Words:
-        return _beside(texts.RACE, self._name)
-
-
-def _beside(title: str, rival: str) -> Words:
-    """Return the words of a flight beside a rival's."""
-    return Words(title, texts.DUEL_RIVAL.format(name=rival), opening=texts.DUEL_BEGIN.format(name=rival))
+        opening = texts.RACE_BEGIN.format(name=self._name)
+        return Words(texts.RACE, texts.RACE_AGAINST.format(name=self._name), opening=opening)
 
 
 class ContinuedFlight(Challenge):
@@ -257,17 +220,14 @@ class FlownMission(Challenge):
         rival_name: Named = "",
         following: Callable[[], Challenge] | None = None,
     ) -> None:
-        super().__init__(eases=True, elsewhere=mission.elsewhere, mission=mission, following=following)
+        super().__init__(elsewhere=mission.elsewhere, mission=mission, following=following)
         self.mission, self.name = mission, mission.name
         self._rival, self._rival_name = rival.recording if rival else None, rival_name
-        self._landed = False
 
     def words(self, flown: FlownFlight) -> Words:
         line, opening = texts.MISSIONS[self.name]
         goal = texts.MISSION_GOAL.format(fuel=self.mission.gold[0], seconds=self.mission.gold[1])
-        again = texts.MISSION_AGAIN if self._landed else ""
-        new = texts.MISSION_NEXT if self.rules.following else ""
-        return Words(texts.MISSION, line, goal, opening, again=again, new=new, card=partial(self._add_to, flown))
+        return Words(texts.MISSION, line, goal, opening, card=partial(self._add_to, flown))
 
     def start(self, wanted: Wanted) -> Start:
         recording = Recording(wanted.seed, "random", mission=self.name, easing=wanted.easing)
@@ -282,7 +242,7 @@ class FlownMission(Challenge):
         """Keep a landing as the ghost of the next try."""
         flown.keep()
         if flown.flight.outcome is Outcome.LANDED and flown.flight.share > 0:
-            self._rival, self._rival_name, self._landed = flown.flight.recording, lambda: texts.GHOST_BEFORE, True
+            self._rival, self._rival_name = flown.flight.recording, lambda: texts.GHOST_BEFORE
 
     def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
         """Say what the next medal asks, or why there is none."""
@@ -290,15 +250,12 @@ class FlownMission(Challenge):
         if not card.good:
             card.advice = _advice(flight.env) or card.advice
             return
-        if not credit.counts and credit.bar == "assists":
+        if not credit.counts:
             return
-        earned = texts.MISSION_TOGETHER if credit.together else texts.MEDALS[credit.medal]
-        card.score = texts.DIAL_JOIN.join(filter(None, (card.score, earned)))
-        card.ring, card.medal = credit.together, credit.medal
+        card.score, card.medal = texts.DIAL_JOIN.join((card.score, texts.MEDALS[credit.medal])), credit.medal
         if card.title == texts.PERFECT and credit.medal < 3:  # a medal asks for more than a good touch
             card.title = texts.OUTCOMES[Outcome.LANDED.name][0]
-        if credit.counts:
-            card.reason = self._missing(flight.env, credit.medal)
+        card.reason = self._missing(flight.env, credit.medal)
 
     def _missing(self, env: LanderEnv, medal: int) -> str:
         """Return what the next medal asks."""
@@ -325,7 +282,7 @@ def _advice(env: LanderEnv) -> str:
 def against(record: Record, rival: str = "") -> FlownMission | Race:
     """Return a race against a recorded flight, named by its date or as `rival`; a mission's is raced with medals."""
     mission, name = MISSIONS.get(record.recording.mission), rival or dated(record)
-    return FlownMission(mission, record, name) if mission else Race(record, name)
+    return FlownMission(mission, record, name) if mission else Race(record.recording, name)
 
 
 def dated(record: Record) -> str:

@@ -30,7 +30,7 @@ class DailyStart(Challenge):
     name = DAILY
 
     def __init__(self, day: date, days: Days) -> None:
-        super().__init__(alone=True, eases=True)
+        super().__init__(alone=True)
         self.seed, self.line = day.toordinal(), day.isoformat()
         self._day, self._days = day, days
         self._begun = False
@@ -47,8 +47,7 @@ class DailyStart(Challenge):
             result = self._attempt(entry).line_as(kind)
         return Words(
             texts.DAILY, self.line, opening=texts.DAILY_AGAIN_BEGIN if self.rules.bar else texts.DAILY_FIRST_BEGIN,
-            eased=texts.DAILY_EASED, copy=texts.DAILY_HINT_COPY, stake=(texts.DAILY_STAKE, texts.DAILY_STAKE_MORE),
-            result=result,
+            stake=(texts.DAILY_STAKE, texts.DAILY_STAKE_MORE), result=result,
         )  # fmt: skip
 
     def start(self, wanted: Wanted) -> Start:

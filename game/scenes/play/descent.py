@@ -57,7 +57,7 @@ class Descent(Challenge):
     name = DESCENT
 
     def __init__(self, best: tuple[int, int] = (0, 0)) -> None:
-        super().__init__(compares=False)
+        super().__init__()
         self.best, self._seed = best, -1
         self._flown: list[Recording] = []
         self._before: list[Recording] = []  # an earlier run over the same ground
@@ -111,7 +111,6 @@ class Descent(Challenge):
         return Words(
             texts.DESCENT_TITLE, texts.DESCENT_LEG.format(number=self.begins.number, kinds=kinds),
             texts.DIAL_JOIN.join(goal), texts.DESCENT_BEGIN if self.begins.number == 1 else hint,
-            again=texts.DESCENT_AGAIN, new=texts.DESCENT_NEW,
             marks=partial(self._draw, flown), card=partial(self._add_to, flown),
             stake=(texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)),
         )  # fmt: skip

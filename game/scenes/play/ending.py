@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import groupby, pairwise
+from itertools import groupby
 from typing import Final
 
 import numpy as np
@@ -11,21 +11,18 @@ import numpy as np
 from ai.environment import Doubles
 from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
+from game.drawing.tokens import HUMAN, NET
 from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import OutcomeCard
-from game.scenes.play.card import PLACES
 from game.world.camera import CameraTarget, ClearArea, View
 from game.world.paths import draw_faint
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
-_RETRACED: Final = 60  # steps in which the path is drawn once more
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 _STRIDE: Final = 4  # steps between points of a path
 _MOST_MARKS: Final = 24
-_CARD: Final = (480.0, 136.0, 280.0)  # points: width, top and height of the outcome card
 _DIM: Final = 0.62  # as the past must not outshine the present
 
 
@@ -35,7 +32,7 @@ class FlightEnding:
     Attributes:
         calm: whether motion is reduced.
         card: the outcome card; None before the end, and where the flight restarts at once.
-        whole: shot of the whole flight; None likewise.
+        whole: shot of the whole flight, beside the card; None likewise.
 
     """
 
@@ -57,12 +54,6 @@ class FlightEnding:
         if since <= 0:
             return 0.0
         return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
-
-    @property
-    def retraced(self) -> float:
-        """How much of the path is drawn, 0 to 1: once the card is there, it is flown once more in a second."""
-        since = self._since - _CARD_AFTER
-        return 1.0 if self.calm or since <= 0 else min(1.0, since / _RETRACED)
 
     @property
     def shot(self) -> CameraTarget | None:
@@ -101,33 +92,14 @@ class FlownPath:
         """The path so far: positions (k, 2) in metres."""
         return np.array(self._points)
 
-    def clear_place(self, view: View) -> float:
-        """Return the place of a card across the view, 0 to 1, at which it hides least of the path."""
-        points = view.points(self.places)
-
-        def hidden(place: float) -> int:
-            left = place * (VIEW_SIZE[0] - _CARD[0])
-            inside = (points >= (left, _CARD[1])) & (points <= (left + _CARD[0], _CARD[1] + _CARD[2]))
-            return int(inside.all(axis=1).sum())
-
-        return min(PLACES, key=hidden)
-
-    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles], share: float = 1.0) -> None:
-        """Draw that share of the path, and a diamond where the co-pilot stepped in, below the head; some of many."""
-        count = max(2, round(share * len(self._points)))
-        pixels, ends = view.pixels(self.places[:count]), [0]
-        for _, run in groupby(self._hands):
-            ends.append(ends[-1] + len(list(run)))
-        for start, end in pairwise(min(each, count - 1) for each in ends):
-            if start == end:
-                break
-            colour = HUMAN if self._hands[start] is StickHolder.HUMAN else NET
+    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles]) -> None:
+        """Draw the path, and a diamond where the co-pilot stepped in, below the head; some of many."""
+        pixels, start = view.pixels(self.places), 0
+        for hand, run in groupby(self._hands):
+            end = start + len(list(run))
+            colour = HUMAN if hand is StickHolder.HUMAN else NET
             draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * ClearArea.head)
-        if share < 1:
-            x, y = view.points(self.places[count - 1]).tolist()
-            canvas.glow((x, y), 16, HUMAN, 0.6)
-            canvas.dot((x, y), 3.5, HUMAN)
-            return
+            start = end
         for place in moments[:: max(1, -(-len(moments) // _MOST_MARKS))]:
             spot = view.points(place).tolist()
             if spot[1] > canvas.view.top + ClearArea.head:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pygame
 
 from ai.environment import Doubles
-from ai.flights.recording import AS_IT_IS, UNHURRIED
+from ai.flights.recording import UNHURRIED
 from ai.flights.verification import landing_score
-from ai.lander.environment import Cause
 from ai.lander.push import KEYS, Push
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
@@ -20,16 +19,15 @@ from game.core.clock import TimeScale
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of
+from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of, yours
 from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
 from game.flight.flight import Flight, StickHolder, begin
 from game.flight.flight_file import Entry, Record
 from game.flight.foresight import SixFutures
 from game.flight.logbook import Records
-from game.flight.networks import Network
-from game.flight.outcomes import OutcomeCard, cause_of, outcome_card
-from game.input.bindings import Held
+from game.flight.networks import Network, sentence
+from game.flight.outcomes import OutcomeCard, outcome_card
 from game.scenes.play.challenge import Challenge, Wanted
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.ending import FlightEnding, FlownPath
@@ -94,7 +92,6 @@ class FlownFlight:
         clear: the part of the screen in which to show the flight.
         futures: the six futures, once somebody has asked; None before.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
-        goal: what there is to fly for, in a sentence; empty for nothing of its own.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
         age: steps of 1/60 s since it was first shown, whether or not it flies.
@@ -111,11 +108,9 @@ class FlownFlight:
         self.begun = False
         self.age = 0
         self.record: Record | None = None
-        self.goal = ""
         rules = challenge.rules
         self._policy = None if rules.alone else network.policy
-        easing = eased(self._settings) if rules.eases else AS_IT_IS
-        start = challenge.start(Wanted(seed, self._policy, spawn, easing))
+        start = challenge.start(Wanted(seed, self._policy, spawn, eased(self._settings)))
         self.flight = begin(start.recording, self._policy, shares=start.shares)
         if start.place:
             start.place(self.flight)
@@ -133,8 +128,8 @@ class FlownFlight:
         self.path = FlownPath(self.flight)
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)
-        self._shadow = Flight(self.flight.recording, Alone(self._policy)) if rules.shadows and self._policy else None
-        self.path_preview = PathPreview(self.flight, self._policy if rules.guides else None)
+        self._shadow = Flight(self.flight.recording, Alone(self._policy)) if rules.free and self._policy else None
+        self.path_preview = PathPreview(self.flight, self._policy if rules.free else None)
 
     @property
     def helps(self) -> bool:
@@ -158,14 +153,13 @@ class FlownFlight:
         if not self.credit.alone:
             self._policy = network.policy
             self.flight.chooser.change_network(network.policy)
-            self.path_preview.ask(self._policy if self.challenge.rules.guides else None)
+            self.path_preview.ask(self._policy if self.challenge.rules.free else None)
 
     # Time
 
     def animate(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
         self.age += 1
-        self.scenery.animate()
         self.help_words.shown = max(0, self.help_words.shown - 1)
 
     def step(self, asked: Push) -> Happened:
@@ -201,7 +195,7 @@ class FlownFlight:
             self.context.sound.play(sound)
         ended = flight.over and not was_over
         if ended:
-            self._end()
+            self.challenge.ended(self)
         if flight.over:
             self.ending.follow()
             self._finish_card()
@@ -212,13 +206,10 @@ class FlownFlight:
     def _waits(self, asked: Push) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         self._held_before &= asked != Push()
-        touched, guard = asked != Push() or not self.challenge.rules.waits, self.flight.chooser.guard
+        guard = self.flight.chooser.guard
         ready = guard is None or guard.ready(self.flight)  # or nobody would keep it from harm at first
-        goes = (
-            touched and ready and not (self._held_before or (self.challenge.rules.holds and self.helped.help == "off"))
-        )
-        if goes or self.flight.chooser.hand is StickHolder.NETWORK:
-            self.waiting = False
+        goes = asked != Push() and ready and not self._held_before
+        self.waiting &= not (goes or self.flight.chooser.hand is StickHolder.NETWORK)
         return self.waiting
 
     def hang(self) -> None:
@@ -261,36 +252,31 @@ class FlownFlight:
         for name, readout in self._readouts.items():
             self._readouts[name] = replace(readout, label=fresh[name].label, what=fresh[name].what)
         self.interventions.forget()
-        self.copilot_panel.forget()
         self.copilot_panel.follow(self.flight, self.futures)
-
-    def _end(self) -> None:
-        self.ending.whole = self.scenery.shot_of(self.path.places)
-        self.challenge.ended(self)
 
     def make_card(self) -> OutcomeCard:
         """Return the card, to which all that follow the flight have added what they know."""
-        flight, credit, whole = self.flight, self.credit, self.ending.whole
-        card = outcome_card(flight.env, flight.share)
-        card.who, card.place = credit.who, self.path.clear_place(whole.view(1.0)) if whole else 0.5
+        flight, credit = self.flight, self.credit
+        card = outcome_card(flight.env)
         credit.add_to(card)
-        if card.advice and cause_of(flight.env) is Cause.TILTED:
-            card.advice = f"{card.advice} {texts.ADVICE_FINE.format(key=self.context.controls.word(Held.FINE))}"
-        if credit.helped:
-            if not card.good and (why := why_not_saved(flight)):  # says more than what to do about it
-                card.advice = why
-            card.stepped_in, card.watched = len(self.interventions.moments), self.interventions.watched(flight)
+        if credit.helped and not card.good:  # why it was not saved says more
+            card.advice = why_not_saved(flight) or card.advice
         if add := self.challenge.words(self).card:
             add(card)
+        if flight.share < 1:
+            figures = [f"{100 - yours(flight.share)} %", self.interventions.counted]
+            card.compared[sentence(texts.NETWORK_FLEW, credit.who)] = texts.DIAL_JOIN.join(filter(None, figures))
         return card
 
     def _finish_card(self) -> None:
-        """Add how the network fares from the same start; until that is known, the card leaves it open."""
+        """Add how a ghost, or the network unseen, fares from there; until it is known, the card leaves it open."""
         card = self.ending.card
         if self._shadow and card:
             score = landing_score(self._shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
             card.compared[texts.CARD_NETWORK.format(who=self.credit.who)] = words if self._shadow_ended else "…"
+        if self.ghost and card:
+            card.compared[self.ghost.name] = self.ghost.result(self.flight.env)
 
     def _follow_shadow(self, shadow: Flight[Alone]) -> None:
         """Fly the network's own flight from the same start, unseen; after the player's, some steps in a frame."""
@@ -367,7 +353,7 @@ class FlownFlight:
         if self.ghost:
             self.ghost.draw_way(world, view)
         if flight.over:
-            self.path.draw(world, view, self.interventions.moments, self.ending.retraced)
+            self.path.draw(world, view, self.interventions.moments)
         thinks = self.thinks or (whole and self.copilot_panel.shown and not flight.over)
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)

@@ -15,7 +15,6 @@ from ai.lander.spawns import LADDER, RUNGS
 from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
 from game.flight.flight import Flight
-from game.flight.networks import sentence
 from game.flight.outcomes import OutcomeCard
 from game.scenes.play.challenge import Challenge, Start, Wanted, Words
 
@@ -30,7 +29,7 @@ class FreeFlight(Challenge):
     """One free flight after another, as the player has chosen; their place on the ladder is kept in the settings."""
 
     def __init__(self, settings: Settings) -> None:
-        super().__init__(free=True, fixed=False, eases=True, guides=True, shadows=True)
+        super().__init__(free=True, fixed=False)
         self._settings = settings
         self._misses = self._now = 0  # misses in a row, on this rung; the rung after the last flight
 
@@ -69,14 +68,8 @@ class FreeFlight(Challenge):
     def _add_to(self, flown: FlownFlight, card: OutcomeCard) -> None:
         """Say how that has moved the player on."""
         rung = rung_of(flown.flight)
-        if rung is None:
-            return
-        card.rung = self._now
-        card.climb = _words(rung, self._now)
-        if card.good and not flown.credit.own:
-            card.climb = sentence(texts.LADDER_NOT_FLOWN, flown.credit.who)
-        if card.good:  # what a landing counts for, helped or not, is said once, by the line of the ladder
-            card.reason = texts.OUTCOMES[Outcome.LANDED.name][1]
+        if rung is not None:
+            card.climb = _words(rung, self._now)
 
 
 def rung_of(flight: Flight[Any]) -> int | None:

@@ -17,7 +17,6 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import NET
 from game.flight.flight import Flight
-from game.flight.outcomes import RivalOutcome, flight_figures
 from game.world import lander as art
 from game.world.camera import ClearArea, View
 from game.world.flame import NET_PLUME, plume
@@ -53,11 +52,18 @@ class Ghost:
         ended = np.array([flight.over and not was_over])
         self._trail.follow(flight.env.position, flight.env.outcome, np.zeros(1, bool), ended)
 
-    def row(self, yours: LanderEnv) -> RivalOutcome:
-        """Return the rival's row on the outcome card of the player's finished flight."""
-        env = self.flight.env
-        figures = {label: (value, unit) for label, value, unit in flight_figures(env)} if self.flight.over else {}
-        return RivalOutcome(self.name, _result(yours, env), figures)
+    def result(self, yours: LanderEnv) -> str:
+        """Return the rival's result and, where both have landed, who was first, for the card of a finished flight."""
+        theirs = self.flight.env
+        outcome = Outcome(int(theirs.outcome[0]))
+        if theirs.intact[0]:
+            return texts.BESIDE_RESULT
+        if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
+            return texts.RIVAL_RESULTS[outcome.name]
+        behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the figures on the card
+        if behind == 0:
+            return texts.RIVAL_TOGETHER
+        return (texts.RIVAL_AFTER if behind > 0 else texts.RIVAL_BEFORE).format(seconds=f"{abs(behind):.1f}")
 
     def draw_way(self, canvas: Canvas, view: View) -> None:
         self._trail.draw(canvas, view, 0, ClearArea.head)
@@ -78,19 +84,6 @@ class Ghost:
             spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
             canvas.glow(spot, 14, NET, 0.5)
             canvas.marker("diamond", spot, 9, NET, 0.9)
-
-
-def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
-    """Describe the rival's result and, where both have landed, who was first."""
-    outcome = Outcome(int(theirs.outcome[0]))
-    if theirs.intact[0]:
-        return texts.BESIDE_RESULT
-    if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
-        return texts.RIVAL_RESULTS[outcome.name]
-    behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the rounded figures on the card
-    if behind == 0:
-        return texts.RIVAL_TOGETHER
-    return (texts.RIVAL_AFTER if behind > 0 else texts.RIVAL_BEFORE).format(seconds=f"{abs(behind):.1f}")
 
 
 def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:

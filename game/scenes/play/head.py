@@ -216,7 +216,7 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
         sentence_now, warns = (said, False) if said else usual
         shown = helps if flown.help_words.shown else None
         panel = flown.copilot_panel.box(flown.context.reading()) if flown.thinks else None
-        caption = words.line if flown.challenge.rules.skip else ""  # how far the tutorial is
+        caption = words.line if words.next else ""  # how far the tutorial is
         return Head(sentence_now, warns, lamp, caption, hints=hints, help=shown, means=means, panel=panel)
     if flown.ending.shown and not whole:
         return Head(hints=hints)
@@ -249,11 +249,9 @@ def _asides(flown: FlownFlight, words: Words) -> list[str]:
     lines = [
         texts.HELP_NOT_HERE.format(more=more) if off and flown.challenge.rules.kept and before else "",
         credit.header if credit.alone and not flight.over else "",
-        credit.notice or words.goal or flown.goal,
-        words.eased if credit.bar == "assists" and before else "",
+        credit.notice or words.goal,
         texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and beside else "",
         *surroundings(flight.env),
-        *words.asides,
     ]
     return [line for line in lines if line]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from ai.environment import Doubles
-from ai.lander.environment import ACTION_NAMES, Outcome
+from ai.lander.environment import ACTION_NAMES
 from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.tokens import HUMAN, NET
@@ -36,7 +36,6 @@ class Interventions:
     def __init__(self) -> None:
         self.moments: list[Doubles] = []
         self.throughout = -1.0  # before the first step
-        self._guarded = False  # whether a guardian by futures watched over a part of the flight
         self._since, self._calm = _LASTS + _FADES, _CALM
         self._word = self._said = ""
         self._decision: SharedDecision | None = None  # the latest
@@ -47,7 +46,6 @@ class Interventions:
         guarded = flight.choice.together if guards else None
         assist = guarded.assist if guarded else 0.0
         self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
-        self._guarded |= guards
         guard = flight.chooser.guard
         changed = flight.choice.overridden and (not guards or guard is None or guard.saves)
         if changed and self._calm >= _CALM:
@@ -74,13 +72,10 @@ class Interventions:
         """What the co-pilot has just changed, in one sentence; empty once that is long enough ago to have been read."""
         return self._word if self._since < _LASTS else ""
 
-    def watched(self, flight: Flight[Crew]) -> bool:
-        """Whether a guardian watched over a flight to its landing, and can tell how often it saved it.
-
-        It cannot if something else was flown only because answers came late: nobody knows whether that was needed.
-        """
-        late = flight.chooser.guard.late if flight.chooser.guard else 0
-        return self._guarded and flight.outcome is Outcome.LANDED and not (late and not self.moments)
+    @property
+    def counted(self) -> str:
+        """Text that says how often the co-pilot stepped in; empty if it did not."""
+        return texts.CARD_SAVED.format(count=len(self.moments)) if self.moments else ""
 
     def lamp(self, flight: Flight[Crew]) -> Lamp:
         """Return shape, colour and glow: disc for who has the stick, ring for hands off, diamond for an override."""

@@ -21,7 +21,7 @@ _IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named whi
 
 def flight_actions(scene: PlayScene) -> list[Action]:
     """Return what keys do in flight."""
-    rules, words, flight = scene.challenge.rules, scene.words, scene.flight
+    words, flight = scene.words, scene.flight
     taken = flight.chooser.hand is StickHolder.NETWORK
     hints = {
         Command.HANDOVER: texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER,
@@ -29,7 +29,7 @@ def flight_actions(scene: PlayScene) -> list[Action]:
         Command.RETRY: texts.HINT_RETRY if scene.flown.begun else "",
         Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
     }
-    if flight.over or not flight.chooser.network or (rules.keeps_stick and not taken):
+    if flight.over or not flight.chooser.network:
         hints[Command.HANDOVER] = ""
     named: Iterable[Command] = hints if scene.waiting else ()
     if not (scene.waiting or flight.over) and scene.context.controls.mouse_in_use:
@@ -43,16 +43,14 @@ def flight_actions(scene: PlayScene) -> list[Action]:
 
 def card_actions(scene: PlayScene, go_on: Run) -> list[Action]:
     """Return the two actions that an outcome card names: to go on, and one of the others."""
-    card, rules, words = scene.ending.card, scene.challenge.rules, scene.words
+    card, rules = scene.ending.card, scene.challenge.rules
     assert card is not None
-    again, new = words.again, words.new
     first = (texts.CARD_FIRST_FIXED if rules.fixed else texts.CARD_FIRST)[card.good]
-    if card.rung is not None and card.rung < (rung_of(scene.flight) or 0):
+    if rules.free and scene.context.settings.rung < (rung_of(scene.flight) or 0):
         first = texts.LADDER_NEARER
     if card.good:
-        first, other, hint = new or first, Command.RETRY, again or texts.HINT_AGAIN
-    elif rules.fixed:
-        first, other, hint = again or first, Command.PAUSE, texts.HINT_LEAVE
+        first = texts.MISSION_NEXT if rules.following else first
+        other, hint = Command.RETRY, texts.HINT_AGAIN
     else:
-        first, other, hint = again or first, Command.NEXT, new or texts.HINT_NEW
+        other, hint = (Command.PAUSE, texts.HINT_LEAVE) if rules.fixed else (Command.NEXT, texts.HINT_NEW)
     return [Action(Command.CONFIRM, go_on, first), Action(other, scene.runs[other], hint)]

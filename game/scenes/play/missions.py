@@ -14,7 +14,6 @@ from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.glyphs import icon
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
 from game.flight import flight_file
-from game.flight.credit import TOGETHER
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records, rank
 from game.scenes.play.card import draw_lamps
@@ -45,11 +44,9 @@ class MissionsScene(PanelScene):
 
     def enter(self) -> None:
         self._records = Records(self.context.user_dir)
-        entries = self._records.entries()
-        self._best = _best_by_course(entries)
+        self._best = _best_by_course(self._records.entries())
         if self._records.problem:
             self.context.note(self._records.problem)
-        self._together = _landed_together(entries)
         self.build()
 
     def actions(self) -> Table:
@@ -88,8 +85,7 @@ class MissionsScene(PanelScene):
 
     def _row(self, name: str) -> Row:
         best = self._best.get(name)
-        won = texts.MEDALS[best.medal] if best else texts.MISSION_TOGETHER if name in self._together else "–"
-        return f"{icon(name)}   {texts.MISSIONS[name][0]}", won
+        return f"{icon(name)}   {texts.MISSIONS[name][0]}", texts.MEDALS[best.medal] if best else "–"
 
     def _write_medal(self, medal: int, cursor: Cursor) -> None:
         """Write what a medal asks, behind its lamps, and a tick if it is won."""
@@ -132,11 +128,6 @@ class MissionsScene(PanelScene):
 
     def _fly(self) -> Transition:
         return push("play", 0, challenge=self._mission(self.chosen))
-
-
-def _landed_together(entries: list[Entry]) -> set[str]:
-    """Return the missions that player and network have landed together, under the current rules."""
-    return {entry.course for entry in entries if entry.landed and entry.human > 0 and entry.bar in TOGETHER}
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:

@@ -21,7 +21,7 @@ from game.flight.logbook import Records, ladder_rung
 from game.flight.outcomes import OutcomeCard
 from game.input.controls import Command, translate
 from game.scenes.play.card import ShownCard
-from game.scenes.play.challenge import Challenge, Duel, Words
+from game.scenes.play.challenge import Challenge, Race, Words
 from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
 from game.scenes.play.free import FreeFlight, rung_of
@@ -34,11 +34,10 @@ from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import HintRow
+from game.world import framing
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
-_SKIP_ALL: Final = 60  # steps that the key for what comes next is held to leave out the whole tutorial
-_RELEASES: Final = (pygame.KEYUP, pygame.CONTROLLERBUTTONUP, pygame.WINDOWFOCUSLOST)
 _INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
 
 
@@ -67,14 +66,14 @@ class PlayScene(Scene):
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._stick = FlightControls(context.controls, context.settings)
         self.form, self.explained = Form(context), Explained()
-        self._away = self._held_next = 0  # steps since the window was left, and the key for what comes next is held
+        self._away = 0  # steps since the window was left
         self._records = Records(context.user_dir)
         entries = self._records.entries()
         if self._records.problem:
             context.note(self._records.problem)
         self._sitting = Sitting(entries)
         new = seed is None and not context.settings.tutored
-        usual = Duel(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
+        usual = Race(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
         ladder_rung(context.settings, entries)
         self._take(challenge or usual)
         self._load_network()
@@ -91,7 +90,7 @@ class PlayScene(Scene):
     def _chosen(self) -> tuple[object, ...]:
         """What the player has chosen for the next flight."""
         settings, rules = self._settings, self.challenge.rules
-        return (settings.three_pads, settings.rung) if rules.free else (), rules.eases and eased(settings)
+        return (settings.three_pads, settings.rung) if rules.free else (), eased(settings)
 
     def _take(self, challenge: Challenge) -> None:
         """Take what the next flights are flown as. Help of free flights does not follow into a challenge."""
@@ -115,10 +114,6 @@ class PlayScene(Scene):
             outcome = self.form.handle_event(event)
             if self.form.used:
                 return outcome
-        if event.type in _RELEASES:
-            self._held_next = 0
-        elif translate(event) is Command.NEXT:
-            self._held_next = 1
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         if event.type in _INTERRUPTS:
@@ -145,19 +140,16 @@ class PlayScene(Scene):
         self._away += self._away > 0
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self.pause()
-        self._held_next += self._held_next > 0
-        if self._held_next > _SKIP_ALL and self.words.next:
-            self._end_challenge()
         asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
         happened = self.flown.step(asked)
         if happened.ended and not self.challenge.rules.again:
             self._sitting.add(self.flown)
             self.ending.card = self._make_card()
-            if self._sitting.first:
-                self._sound.play("choose")
         elif happened.retries:
             self.retry()
+        if card := self._card:
+            self.ending.whole = framing.whole(self.flown.path.places, card.clear(self.context.reading()))
         return None
 
     def _make_card(self) -> OutcomeCard:
@@ -190,7 +182,7 @@ class PlayScene(Scene):
             return []
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
         watch = [Action(pygame.K_t, self._watch, texts.CARD_WATCH, Command.STEP)] if self.flown.record else []
-        copy = [Action(pygame.K_k, self._copy, self.words.copy, Command.NEXT)] if self.words.result else []
+        copy = [Action(pygame.K_k, self._copy, texts.DAILY_HINT_COPY, Command.NEXT)] if self.words.result else []
         return [*card_actions(self, self._go_on), *offer, *watch, *copy]
 
     @property
@@ -223,9 +215,6 @@ class PlayScene(Scene):
         self.context.apply_settings()
 
     def _hand_over(self) -> None:
-        by_hand = self.flight.chooser.hand is StickHolder.HUMAN
-        if self.challenge.rules.keeps_stick and by_hand:
-            return
         if not self.flight.over and self.flight.chooser.hand_over():
             self._sound.play("to_network" if self.flight.chooser.hand is StickHolder.NETWORK else "to_human")
         elif self.flight.chooser.network is None and not self.flight.over:
@@ -281,12 +270,11 @@ class PlayScene(Scene):
 
     @property
     def _card(self) -> ShownCard | None:
-        ending, ghost = self.ending, self.flown.ghost
+        ending = self.ending
         if ending.card is None or ending.shown == 0:
             return None
-        rival = ghost.row(self.flight.env) if ghost and self.challenge.rules.compares else None
         hints = hints_of(self._card_actions(), self._controls)
-        return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints, rival)
+        return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints)
 
     @property
     def _head(self) -> Head:
@@ -329,8 +317,6 @@ class PlayScene(Scene):
             self.context, self._records, self.network, self.challenge, self._helped, seed, spawn
         )
         self.flight, self.credit, self.ending = flown.flight, flown.credit, flown.ending
-        if self.challenge.rules.free and rung_of(self.flight) is None:
-            flown.goal = self._sitting.goals.next
 
     def _begin_anew(self) -> None:
         self._begin(int(self.context.rng.integers(2**31)))
@@ -345,7 +331,7 @@ class PlayScene(Scene):
         """
         card = self.ending.card
         if card is None or not card.good:
-            spawn = "" if card and card.rung is not None else self.flight.recording.spawn
+            spawn = "" if rung_of(self.flight) is not None else self.flight.recording.spawn
             self._begin(self.flight.recording.seed, spawn)
         elif self.challenge.rules.fixed:
             if self.challenge.rules.following is None:
@@ -358,8 +344,7 @@ class PlayScene(Scene):
 
     def _begin_elsewhere(self) -> None:
         rules = self.challenge.rules
-        if rules.skip:
-            rules.skip()
+        self.challenge.skip()
         if rules.through:
             self._end_challenge()
         else:
@@ -371,7 +356,6 @@ class PlayScene(Scene):
 
     def _end_challenge(self) -> None:
         """End the tutorial, which is not offered again; free flights follow."""
-        self._held_next = 0
         self._settings.tutored = True
         self.context.apply_settings()
         self._take(FreeFlight(self._settings))

@@ -1,8 +1,7 @@
-"""A sitting: what a flight after others has on its card: their scores, the first landing, an offer of help."""
+"""A sitting: what a flight after others has on its card: the best score from its start, a record, an offer of help."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
@@ -10,7 +9,6 @@ from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight_file import Entry
-from game.flight.goals import Goals
 from game.flight.logbook import best_alone
 from game.scenes.play.free import rung_of
 
@@ -26,7 +24,6 @@ class Sitting:
 
     Attributes:
         offers: whether the card in view offers help.
-        first: whether it is that of the player's first landing alone.
 
     """
 
@@ -35,8 +32,7 @@ class Sitting:
         self._landed_before = any(entry.landed and not entry.bar for entry in entries)
         self._best = best_alone(entries)
         self._best_here: dict[str, int] = {}  # scores of one's own landings by their starts
-        self.goals = Goals(entries)
-        self.first = self._record = self._reached = self._ranked = False
+        self._first = self._record = False
         self._score = self._before = 0  # of the flight that has ended last, and the best from its start before
         self.begin()
 
@@ -58,21 +54,15 @@ class Sitting:
         ranked = counts and flown.challenge.rules.free and rung_of(flight) is None
         self._record = ranked and score > self._best > 0
         self._best = max(self._best, score) if ranked else self._best
-        self._ranked = ranked
-        self._reached = bool(ranked and flown.record and self.goals.add(flown.record.entry))
-        self.first, self._landed_before = counts and not self._landed_before, self._landed_before or counts
+        self._first, self._landed_before = counts and not self._landed_before, self._landed_before or counts
 
     def add_to(self, card: OutcomeCard) -> None:
         """Add to the card of that flight what those before it make of it."""
         if self._before:
             card.compared = {texts.CARD_BEST_HERE: texts.SCORE.format(count=self._before), **card.compared}
-        if self._ranked:
-            card.compared |= self.goals.bests(time.time())
-        if self._reached:
-            card.advice = texts.GOAL_REACHED.format(goal=self.goals.next)
         if self._record:
             card.score = texts.SCORE_BEST.format(count=self._score)
-        if self.first:
+        if self._first:
             card.title, card.reason = texts.FIRST_LANDING, texts.FIRST_LANDING_LINE
         if self.offers:
             card.advice = texts.HELP_OFFER

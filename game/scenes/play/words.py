@@ -6,14 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
-from ai.lander.pilots import COAST
 from ai.lander.sensing import near_edges
 from game.core import texts
-from game.core.catalogue import capital
-from game.explain.landings import Landing, Landings
 from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.flight import networks
 from game.flight.choosers import Crew
@@ -26,7 +21,6 @@ from game.input.controls import Controls
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
 
-Why = tuple[str, str, str]  # a title, and two lines
 _FLOWN_BY, _WARNED, _CHANGED, _AT_ONCE = range(4)  # how urgent sentences are
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
@@ -145,61 +139,31 @@ def dial_words(assist: float, problem: str = "") -> str:
 
 def changed_by(decision: SharedDecision) -> str:
     """Say in one sentence what a guardian has just changed; empty where it has changed nothing."""
-    landings = Landings.of(decision)
+    from ai.copilot.futures import DECISION_STEPS
+    from ai.copilot.guardian import decisions_of
+    from ai.lander.push import KEYS
+    from engine import DT
+
+    assert decision.known is not None
+    known = decision.known[0]
     if not decision.overridden[0]:
-        return texts.GUARDIAN_LOST if landings.lost and Landing.UNKNOWN not in landings.after else ""
-    action, after = landings.asked
-    name, seconds = texts.said(ACTION_NAMES[action]), f"{landings.seconds:.1f}"
-    return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
+        lost = all(key in known for key in KEYS) and not any(future.plan for future in known.values())
+        return texts.GUARDIAN_LOST if lost else ""
+    future, seconds = known.get(decision.asked[0]), decisions_of(decision.assist) * DECISION_STEPS * DT
+    after = "unknown" if future is None else "lost" if future.plan is None else "lands" if future.passes else "briefly"
+    name = texts.said(ACTION_NAMES[int(decision.pilot[0])])
+    return texts.GUARDIAN_SAVED[after].format(asked=name, seconds=f"{seconds:.1f}")
 
 
 def is_late(decision: SharedDecision) -> bool:
     """Whether a guardian has changed what was asked for because that had not been flown ahead in time."""
-    return bool(decision.overridden[0]) and Landings.of(decision).asked[1] is Landing.UNKNOWN
+    return bool(decision.overridden[0]) and not (decision.known and decision.asked[0] in decision.known[0])
 
 
 def why_not_saved(flight: Flight[Crew]) -> str:
     """Say of a helped flight that was lost why it was not saved; empty if that is not known."""
     guard = flight.chooser.guard
-    if guard and guard.bare:
-        since, why = guard.bare
-        return texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
+    if guard and guard.bare is not None:
+        return texts.GUARDIAN_BARE.format(since=f"{guard.bare:.1f}")
     by_values = flight.chooser.copilot and (guard is None or guard.ahead.problem)
     return texts.NOT_SAVED_BY_VALUES if by_values else ""
-
-
-def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:
-    """Explain whose action a guardian flies, by the futures that decided it."""
-    from ai.copilot.guardian import ActionSource
-
-    source = ActionSource(int(decision.source[0]))
-    action, after = landings.asked
-    if source is not ActionSource.PILOT:
-        key = f"changed_{after.value}"
-    elif decision.held is not None and decision.held[0]:
-        key = "passes"
-    else:
-        key = "looking" if Landing.UNKNOWN in landings.after else "none"
-    asked, flown = (texts.said(ACTION_NAMES[each]) for each in (action, landings.flown))
-    words = {"asked": capital(asked), "flown": capital(flown), "seconds": f"{landings.seconds:.1f}"}
-    first, second = (line.format(**words) for line in texts.GUARDIAN_WHY[key])
-    return texts.COPILOT_PANEL_WHY[source.name], first, second
-
-
-def why_by_values(decision: SharedDecision, pad: int) -> Why:
-    """Explain whose action is flown by the values for one of the pads, which decided it."""
-    from ai.copilot.guardian import ActionSource
-
-    source, asked = ActionSource(int(decision.source[0])), int(decision.pilot[0])
-    title = texts.COPILOT_PANEL_WHY["HANDS_OFF" if asked == COAST else source.name]
-    points = decision.points[0, pad]
-    if not np.isfinite(points).all():
-        return title, *texts.VALUES_DAMAGED
-    if asked == COAST:
-        return title, *texts.COPILOT_PANEL_HANDS_OFF
-    loss = float(points.max() - points[asked])
-    name = capital(texts.said(ACTION_NAMES[asked]))
-    template = texts.COPILOT_PANEL_BELOW if loss >= _LEAST_LOSS else texts.COPILOT_PANEL_SAME
-    flown = texts.COPILOT_PANEL_ENOUGH if source is ActionSource.PILOT else texts.COPILOT_PANEL_CHANGED
-    action = texts.said(ACTION_NAMES[int(decision.action[0])])
-    return title, template.format(asked=name, loss=f"{loss:.1f}"), flown.format(flown=action)

@@ -12,7 +12,6 @@ import pygame
 from ai.agent.decision import Decision
 from ai.files import brief
 from game.core import texts
-from game.core.catalogue import capital
 from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import LEADING, Cursor
@@ -64,7 +63,7 @@ class WatchScene(WorldScene):
     @property
     def decision(self) -> Decision:
         """The decision that the shown lander flies."""
-        return self.world.decision
+        return self.swarm.decision.of(self.world.shown)
 
     def enter(self) -> None:
         """Follow a change of the networks and of the settings."""
@@ -143,8 +142,6 @@ class WatchScene(WorldScene):
         )  # fmt: skip
         count = ChoiceRow(texts.WATCH_COUNT, texts.WATCH_MANY, self._many, self._choose_count, SMALL)
         widgets: list[ButtonRow | ChoiceRow] = [who, count, self.playback.choice()]
-        if world.can_untouch:
-            widgets.append(ButtonRow(capital(texts.HINT_UNTOUCH), world.untouch, size=SMALL))
         if more:
             on = world.policy_map.on
             widgets += [
@@ -161,7 +158,7 @@ class WatchScene(WorldScene):
         self.hand.label = texts.TOUCH_LANDER
 
     def state(self) -> Hashable:
-        return super().state(), self.world.can_untouch, self.world.policy_map.on
+        return super().state(), self.world.policy_map.on
 
     @property
     def sentence(self) -> tuple[str, Colour, Shape]:

@@ -86,7 +86,7 @@ class Hand(VirtualPointer):
 
     def part_at(self, point: Point) -> int | None:
         """Return the part that the mouse would take at a point, if any."""
-        if not (self._lander.at_hand and self.box.collidepoint(point)):
+        if not (self._lander.playback.stopped and self.box.collidepoint(point)):
             return None
         if math.dist(point, self.tilt_knob) <= _REACH:
             return TILT
@@ -98,13 +98,13 @@ class Hand(VirtualPointer):
 
     def turn(self, notches: float) -> None:
         """Tilt by so many notches counter-clockwise."""
-        if self._lander.at_hand:
+        if self._lander.playback.stopped:
             self._put(angle=float(self._lander.state[4]) + NOTCH * notches)
 
     def mouse(self, event: pygame.event.Event) -> bool:
         """Take a mouse event, its position in points; false leaves it to others."""
         if event.type == pygame.MOUSEMOTION and self.dragging:
-            if self._lander.at_hand:
+            if self._lander.playback.stopped:
                 self._drag_to(event.pos)
             return True
         if event.type not in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) or event.button != 1:
@@ -170,7 +170,7 @@ class Hand(VirtualPointer):
 
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)
-        if not self._lander.at_hand:
+        if not self._lander.playback.stopped:
             self.lay_aside()
             self.dragging = False
 
@@ -187,7 +187,7 @@ class Hand(VirtualPointer):
         """Draw the ring, the dot and the arrow while the lander can be touched; or the focus around it."""
         if self.ringed and self.warmth > 0.02:
             canvas.outline(_around(self.middle, self.radius + 5), 8, INK, 1, 0.4 * self.warmth)
-        if not self._lander.at_hand:
+        if not self._lander.playback.stopped:
             return
         pointer = self._pointer if self.typing else canvas.pointer
         lit = self.part if self.dragging else self.part_at(pointer) if pointer is not None else None

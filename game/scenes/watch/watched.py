@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from ai.agent.decision import Decision
 from ai.environment import Bools, Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
-from game.core.clock import STEP, TimeScale
+from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK
 from game.flight.networks import Policy
@@ -55,7 +54,7 @@ class Watched:
         self.policy_map = PolicyMap()
         self._clock = TimeScale()
         self.playback = Playback(self._clock, SPEEDS, self.fly_to_the_next_decision)
-        self.shown, self._time = 0, 0.0
+        self.shown = 0
         self.free = context.reading().view
 
     def begin(self, many: bool, seed: int, policy: Policy) -> None:
@@ -65,9 +64,8 @@ class Watched:
         self.stage = Stage(self.swarm.env, np.random.default_rng(seed))
         self.stage.blue[:] = 1.0
         self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
-        self.trails = Trails(count, keep=5 if many else 12)  # of many, more would only add to the tangle
+        self.trails = Trails(count, keep=5 if many else 0)
         self.shown = min(self.shown, count - 1)
-        self._before: dict[str, Any] | None = None
         self.policy_map.forget()
         self.set_up_camera()
         self._clock.begin()
@@ -76,11 +74,6 @@ class Watched:
     def env(self) -> LanderEnv:
         """The landers' environment."""
         return self.swarm.env
-
-    @property
-    def decision(self) -> Decision:
-        """The decision that the shown lander flies."""
-        return self.swarm.decision.of(self.shown)
 
     @property
     def many(self) -> bool:
@@ -110,8 +103,6 @@ class Watched:
             self.fly()
         if not self.playback.stopped:
             self._heard.follow(self.stage.thrust[self.shown], self.shown)
-        if not self._context.settings.reduced_motion:
-            self._time += STEP
         self.policy_map.follow(self.env, self.shown, self.swarm.policy)
 
     def fly(self) -> None:
@@ -142,19 +133,9 @@ class Watched:
     # The hand
 
     @property
-    def at_hand(self) -> bool:
-        """Whether the shown lander can be touched now."""
-        return self.playback.stopped
-
-    @property
     def touched(self) -> bool:
         """Whether the flight of the shown lander has been touched."""
         return bool(self.swarm.touched[self.shown])
-
-    @property
-    def can_untouch(self) -> bool:
-        """Whether there is a touch to undo, in this flight."""
-        return self._before is not None and self.touched
 
     @property
     def state(self) -> Doubles:
@@ -197,45 +178,31 @@ class Watched:
         return self._view(self._world(canvas)).pixels_per_metre / canvas.scale
 
     def touch(self, start: Doubles) -> None:
-        """Let the shown lander fly on from another state: x, y, vx, vy, angle, spin."""
-        if self._before is None or self._before["steps"] != self.swarm.steps:  # the first touch since it flew
-            self._before = self.swarm.snapshot()
-        self.swarm.touch(self.shown, start)
-        self._show_at_once([self.shown])
-
-    def untouch(self) -> None:
-        """Go back to the moment before the touch, and stop there."""
-        if self._before is not None:
-            self.playback.stopped = True
-            self.swarm.restore(self._before)
-            self._before = None
-            self._show_at_once(range(self.env.num_envs))
-
-    def _show_at_once(self, slots: Any) -> None:
-        """Show landers where they are now, firing as decided, without the traces of what went before."""
+        """Let the shown lander fly on from another state: x, y, vx, vy, angle, spin; it leaves its traces behind."""
+        swarm, slot = self.swarm, self.shown
+        swarm.touch(slot, start)
         self.stage.forget()
-        for slot in slots:
-            self.trails.begin(slot)
-            action = int(self.swarm.decision.action[slot]) * (self.env.outcome[slot] == Outcome.FLYING)
-            self.stage.thrust[slot] = action >= 3, action % 3 == 2, action % 3 == 1
+        self.trails.begin(slot)
+        action = int(swarm.decision.action[slot])
+        self.stage.thrust[slot] = action >= 3, action % 3 == 2, action % 3 == 1
 
     # The picture
 
     def draw(self, canvas: Canvas, between: float) -> None:
         """Draw the world, the map and the swarm."""
-        calm, canvas = self._context.settings.reduced_motion, self._world(canvas)
+        canvas = self._world(canvas)
         view, size = self._view(canvas, between), _SMALL if self.many else 1.0
-        backdrop, earth = landscape(canvas.surface.get_size(), calm, "moon"), self.clear.earth(EARTH, EARTH_RADIUS)
-        backdrop.draw(canvas, self.camera, self._time, between, earth)
+        earth = self.clear.earth(EARTH, EARTH_RADIUS)
+        landscape(canvas.surface.get_size(), "moon").draw(canvas, self.camera, between, earth)
         self.policy_map.draw(canvas, view)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
-        draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
+        draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]))
         self.trails.draw(canvas, view, self.shown, self.clear.head)
         draw_crowd(canvas, view, poses[others], size)
         self._draw_shown(canvas, view, poses[self.shown])
-        self.stage.draw_dust(canvas, view, between)
+        self.stage.particles.draw(canvas.surface, view, between)
 
     def _others(self) -> Bools:
         """Which landers are drawn beside the one that is shown, (n,): all but those long wrecked."""

@@ -46,15 +46,13 @@ class Backdrop:
     build another for another size.
     """
 
-    def __init__(
-        self, size: tuple[int, int], rng: np.random.Generator, reduced_motion: bool = False, look: Theme = MOON
-    ) -> None:
+    def __init__(self, size: tuple[int, int], rng: np.random.Generator, look: Theme = MOON) -> None:
         self.size = size
         width, self._height = page_of(size)
         self._aside, self._above = (size[0] - width) // 2, size[1] - self._height  # beside the page, and above it
         self._unit = self._height / 720
-        self._chances, self._calm, self._look = rng.spawn(4 + len(RIDGES)), reduced_motion, look
-        self._far = InPieces(partial(_paint_far, size, self._chances, reduced_motion, look))
+        self._chances, self._look = rng.spawn(4 + len(RIDGES)), look
+        self._far = InPieces(partial(_paint_far, size, self._chances, look))
         self._plains: dict[tuple[float, bool], InPieces[_Plain]] = {}
 
     @property
@@ -62,22 +60,11 @@ class Backdrop:
         """Whether all of it that was painted so far is painted in full."""
         return self._far.whole and all(plain.whole for plain in self._plains.values())
 
-    def draw(
-        self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0, earth: tuple[float, float] = EARTH
-    ) -> None:
-        """Fill the view. `time` in seconds moves the stars' twinkling and nothing else.
+    def draw(self, canvas: Canvas, camera: Camera, alpha: float = 1.0, earth: tuple[float, float] = EARTH) -> None:
+        """Fill the view; `earth` is where the Earth's middle stands, in points."""
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha).filling(canvas), earth)
 
-        `earth` is where the Earth's middle stands, in points.
-        """
-        self.paint(canvas.surface, camera.view(canvas.scale, alpha).filling(canvas), time, earth)
-
-    def paint(
-        self,
-        surface: pygame.Surface,
-        view: View | None = None,
-        time: float = 0.0,
-        earth: tuple[float, float] = EARTH,
-    ) -> None:
+    def paint(self, surface: pygame.Surface, view: View | None = None, earth: tuple[float, float] = EARTH) -> None:
         """Fill a surface of this backdrop's size, as seen in a view; without one, as at rest.
 
         Distant layers keep their size at any zoom. They move up and down with the horizon, and sideways by a small
@@ -97,7 +84,7 @@ class Backdrop:
         if down > 0:  # no sky was painted there, but it is as dark as its top rows
             surface.blit(far.sky, (0, 0), (0, 0, self.size[0], down))
         if self._look.stars:
-            far.stars.draw(surface, (across, down), time)
+            far.stars.draw(surface, (across, down))
         if self._look.earth:
             self._draw_earth(surface, (far.air, far.disc), earth, across, down)
         margin = MARGIN * self.size[0]
@@ -149,15 +136,13 @@ class _Plain(NamedTuple):
     solid: float
 
 
-def _paint_far(
-    size: tuple[int, int], chances: Sequence[np.random.Generator], calm: bool, look: Theme, share: float
-) -> Steps[_Far]:
+def _paint_far(size: tuple[int, int], chances: Sequence[np.random.Generator], look: Theme, share: float) -> Steps[_Far]:
     """Paint all that keeps its size at any zoom, at a share of its resolution."""
     sky, stars, earth, _, *ranges = deepcopy(list(chances))
     height = page_of(size)[1]
     fine = _lines(height, share) / height
     small = round(share * size[0]), round(share * size[1])
-    near_stars = NearStars(size, stars, still=calm)
+    near_stars = NearStars(size, stars)
     yield PIECE // 2
     disc, air = yield from paint_earth(EARTH_RADIUS * fine * height / 720, earth)
     ridges = []
@@ -201,6 +186,6 @@ def _scaled(picture: pygame.Surface, times: float) -> pygame.Surface:
 
 
 @lru_cache(maxsize=3)
-def landscape(size: tuple[int, int], reduced_motion: bool, look: str) -> Backdrop:
+def landscape(size: tuple[int, int], look: str) -> Backdrop:
     """Return the game's landscape at that size under a theme; all scenes share it."""
-    return Backdrop(size, np.random.default_rng(_MOON), reduced_motion, LOOKS[look])
+    return Backdrop(size, np.random.default_rng(_MOON), LOOKS[look])

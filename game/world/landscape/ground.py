@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import Final
 
 import numpy as np
-import pygame
 
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.ground import Ground, Pad, half_plane
 from ai.lander.sensing import NEAR, near_edges
 from game.drawing.canvas import Canvas
-from game.drawing.paint import PIECE, Picture, Sheet, bell, light, slopes
+from game.drawing.paint import PIECE, Picture, Sheet, bell, slopes
 from game.drawing.paint_cache import InPieces, Steps, idle
 from game.drawing.tokens import INK, Colour
 from game.world.camera import GROUND_LINE, LAND_REACH, WORLD_WIDTH, View
@@ -37,14 +35,9 @@ _BAND: Final = 64  # rows that are painted together
 _RIM: Final = 0.05  # metres beside rock that are painted in its colour, though clear
 _STAKE: Final = 5.0  # points
 _LIP: Final = 0.3  # metres that a knoll is lower than its pad
-_EDGE_DEPTH: Final = 4.0  # metres that the glow reaches into the area
-_BEYOND: Final = 60.0  # metres to both sides, beyond any view: of the edge above
-_EDGE_LEVELS: Final = 12  # steps of its strength, so that few pictures are ever made
-_EDGE_LIGHT: Final = 0.8
-_EDGE_PICTURE: Final = (48, 64)  # pixels, stretched
 
 
-def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
+def draw_ground(canvas: Canvas, view: View, ground: Ground, shift: float = 0.0) -> None:
     """Draw hills, if any, and pads, `shift` metres to the right."""
     if ground.hills or ground.roofs:
         sheet, corner = _hills(ground, _detail(view)).picture
@@ -55,7 +48,7 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: 
             _draw_flat_spot(canvas, view, pad)
             continue
         floor = pad.top - _LIP if several else ground.base
-        draw_pad(canvas, view, (pad.x + shift, pad.top), pad.width, time, floor)
+        draw_pad(canvas, view, (pad.x + shift, pad.top), pad.width, floor)
 
 
 def _draw_flat_spot(canvas: Canvas, view: View, pad: Pad) -> None:
@@ -203,36 +196,14 @@ def _softened(row: Picture, width: float) -> Picture:
 
 
 def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> None:
-    """Draw a glow and a hairline along every edge of the area near the craft, brighter the nearer it is."""
+    """Draw a line along every edge of the area near the craft, brighter the nearer it is."""
+    seen = canvas.view
     for edge in near_edges(env):
-        level = math.ceil(_EDGE_LEVELS * (1 - edge.away / NEAR))
-        if not level:
-            continue
-        ceiling = env.limits.ceiling
-        inward = {"left": 1.0, "right": -1.0, "above": -1.0}[edge.side] * _EDGE_DEPTH
         if edge.side == "above":
-            corners = (-_BEYOND, edge.place), (_BEYOND, edge.place + inward)
+            _, row = view.point(0.0, edge.place)
+            start, end = (seen.left, row), (seen.right, row)
         else:
-            corners = (edge.place, ceiling), (edge.place + inward, GROUND_LINE)
-        (x0, y0), (x1, y1) = (view.pixel(*corner) for corner in corners)
-        box = pygame.Rect(round(min(x0, x1)), round(y0), max(1, round(abs(x1 - x0))), max(1, round(y1 - y0)))
-        wide, high = canvas.surface.get_size()
-        seen = box.clip((0, box.top, wide, box.height) if edge.side == "above" else (box.left, 0, box.width, high))
-        if seen.width and seen.height:
-            glow = pygame.transform.scale(_edge_glow(edge.side, level, colour), seen.size)
-            canvas.surface.blit(glow, seen, special_flags=pygame.BLEND_RGB_ADD)
-        end = (_BEYOND, ceiling) if edge.side == "above" else (edge.place, GROUND_LINE)
-        (ax, ay), (bx, by) = (view.point(*place) for place in (corners[0], end))
-        canvas.line((ax, ay), (bx, by), colour, alpha=0.5 * level / _EDGE_LEVELS)
-
-
-@lru_cache(maxsize=3 * _EDGE_LEVELS)
-def _edge_glow(side: str, level: int, colour: Colour) -> pygame.Surface:
-    """Return light that fades inward from one side; `level` is its strength in twelfths."""
-    across, down = _EDGE_PICTURE
-    fade = np.linspace(1.0, 0.0, down if side == "above" else across, dtype=np.float32) ** 2.2
-    shine = np.repeat(fade[:, None], across, axis=1) if side == "above" else np.repeat(fade[None, :], down, axis=0)
-    if side == "right":
-        shine = shine[:, ::-1]
-    strength = _EDGE_LIGHT * level / _EDGE_LEVELS
-    return light(np.ascontiguousarray(shine * strength)[..., None] * np.array(colour, np.float32))
+            column, foot = view.point(edge.place, GROUND_LINE)
+            start, end = (column, seen.top), (column, foot)
+        for width, share in ((1.5, 0.9), (7.0, 0.3), (18.0, 0.15)):
+            canvas.line(start, end, colour, width, share * (1 - edge.away / NEAR))

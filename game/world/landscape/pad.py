@@ -26,21 +26,20 @@ _BLUR: Final = 0.03  # relative error that its width may have
 
 
 def draw_pad(
-    canvas: Canvas, view: View, centre: tuple[float, float], width: float, time: float, floor: float = PARAMS.ground
+    canvas: Canvas, view: View, centre: tuple[float, float], width: float, floor: float = PARAMS.ground
 ) -> None:
-    """Draw a pad whose top has its middle at `centre` and that stands on `floor`; lamps pulse with `time` in s."""
+    """Draw a pad whose top has its middle at `centre` and that stands on `floor`."""
     colour = canvas.palette.good
     x, top = centre
     deck, corner = _paint(view.painted_per_metre, width, round(top - floor, 2), colour)
     pool, reach = _pool(_SOFT * view.painted_per_metre, width, colour)
     pool.draw(canvas.surface, view, (x - reach[0], floor - 0.05 + reach[1]), pygame.BLEND_RGB_ADD)
     deck.draw(canvas.surface, view, (x + corner[0], top + corner[1]))
-    pulse = 0.86 + 0.14 * math.sin(1.7 * time)
     for side in (-1, 1):
         lamp = view.point(centre[0] + side * (width / 2 - 0.08), centre[1] + _LAMP)
         metre = view.pixels_per_metre / view.scale
-        canvas.glow(lamp, 0.95 * metre, colour, 0.75 * pulse)
-        canvas.glow(lamp, 0.34 * metre, colour, 1.1 * pulse)
+        canvas.glow(lamp, 0.95 * metre, colour, 0.7)
+        canvas.glow(lamp, 0.34 * metre, colour, 1.0)
         canvas.dot(lamp, 0.085 * metre, mix(colour, (255, 255, 255), 0.45))
 
 

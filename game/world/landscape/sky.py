@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,6 @@ from game.world.landscape.themes import HORIZON, Theme
 # Where things stand, as shares of the page at the lower edge of the view, and across as shares of the view.
 SUN: Final = (0.77, 0.835)
 _BAND: Final = (0.30, -0.42, 0.085)  # the Milky Way: height at the left edge, slope, half width
-_TWINKLES: Final = 20  # times a second that stars may change
 _FINE: Final = 540  # lines in which gradients are computed; each of their pixels fills a square of the window's
 _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
@@ -112,51 +111,26 @@ def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[I
 
 
 class NearStars:
-    """The brighter stars, which drift a little with the view and twinkle."""
+    """The brighter stars, which drift a little with the view; without air, they do not twinkle."""
 
-    LEVELS: Final = 6
-
-    def __init__(self, size: tuple[int, int], rng: np.random.Generator, still: bool) -> None:
+    def __init__(self, size: tuple[int, int], rng: np.random.Generator) -> None:
         width, height = size[0], page_of(size)[1]
         count = round(130 * width * size[1] / math.prod(page_of(size)))
-        self._still = still
         place = rng.uniform((-0.03, _top(size) - 0.03), (1.03, HORIZON - 0.06), (count, 2)) * (width, height)
         size_of = rng.random(count) ** 2.6
         size_of *= np.clip((HORIZON - 0.05 - place[:, 1] / height) / 0.25, 0.15, 1)
-        self._place = place + np.array((0, size[1] - height))
         self._depth = 0.01 + 0.025 * size_of
-        self._deepest = float(self._depth.max())
-        self._phase = rng.uniform(0, 2 * np.pi, count)
-        self._rate = rng.uniform(0.5, 1.6, count)
-        unit = height / 720
-        kinds = np.round(size_of * 5).astype(int)
-        stars = [_star(kind, unit) for kind in range(6)]
-        shares = np.arange(1, self.LEVELS + 1, dtype=np.float32) / self.LEVELS
-        sprites = [[light(star * share) for share in shares] for star in stars]
-        self._rows = [sprites[kind] for kind in kinds.tolist()]
-        self._half = np.array([row[0].get_width() // 2 for row in self._rows])
-        self._stamps: list[tuple[pygame.Surface, tuple[int, int]]] = []  # what was drawn last, and for which moment
-        self._stamped_for: Any = None
+        stars = [light(_star(kind, height / 720)) for kind in range(6)]
+        self._stars = [stars[kind] for kind in np.round(size_of * 5).astype(int).tolist()]
+        half = np.array([star.get_width() // 2 for star in self._stars])
+        self._corner = place + np.array((0, size[1] - height)) - half[:, None]
 
-    def draw(self, surface: pygame.Surface, shift: tuple[float, float], time: float) -> None:
-        """Add the stars to the sky.
-
-        `shift` is how far the foreground has moved sideways and the horizon up, in pixels.
-        """
-        tick = 0 if self._still else round(_TWINKLES * time)
-        moment = round(4 * self._deepest * shift[0]), round(shift[1]), tick
-        if moment != self._stamped_for:  # to a quarter of a pixel
-            self._stamped_for, self._stamps = moment, self._stamped(shift, tick / _TWINKLES)
-        surface.fblits(self._stamps, pygame.BLEND_RGB_ADD)
-
-    def _stamped(self, shift: tuple[float, float], time: float) -> list[tuple[pygame.Surface, tuple[int, int]]]:
-        """Return the pictures of the stars, each with its corner."""
-        place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
-        corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()
-        level = np.full(len(place), self.LEVELS - 2)
-        if not self._still:
-            level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
-        return [(row[bright], corner) for row, bright, corner in zip(self._rows, level.tolist(), corners, strict=True)]
+    def draw(self, surface: pygame.Surface, shift: tuple[float, float]) -> None:
+        """Add the stars to the sky; `shift` is how far the foreground and the horizon have moved, in pixels."""
+        corners = np.rint(
+            self._corner + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
+        )
+        surface.fblits(list(zip(self._stars, corners.tolist(), strict=True)), pygame.BLEND_RGB_ADD)
 
 
 def _star(kind: int, unit: float) -> Picture:
@@ -164,8 +138,8 @@ def _star(kind: int, unit: float) -> Picture:
     half = max(2, round((2 + 2.4 * kind) * unit))
     axis = np.arange(-half, half + 1, dtype=np.float32)
     distance = np.hypot(axis[:, None], axis[None, :])
-    core = np.exp(-((distance / ((0.6 + 0.1 * kind) * max(unit, 1.0))) ** 2)) * (75 + 40 * kind)
-    halo = np.clip(1 - distance / half, 0, 1) ** 2.4 * 10 * kind
+    core = np.exp(-((distance / ((0.6 + 0.1 * kind) * max(unit, 1.0))) ** 2)) * (62 + 33 * kind)
+    halo = np.clip(1 - distance / half, 0, 1) ** 2.4 * 8 * kind
     white: Picture = core[..., None] * np.array((1.0, 0.98, 0.95), np.float32)
     return white + halo[..., None] * np.array((0.66, 0.8, 1.1), np.float32)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.fix import ENOUGH, STEPS, Fixed, FixStep, fix, steps_to_fix
+from ai.digits.fix import ENOUGH, STEPS, Fixed, FixStep, fix
 from ai.digits.mnist import load_part
 
 CLASSIC = Path(__file__).parents[3] / "models" / "digits" / "classic"
@@ -63,8 +63,8 @@ def test_a_fix_that_cannot_be_kept_says_why(tmp_path, data, misread):
     assert done.problem
 
 
-def test_what_is_no_drawing_or_no_digit_is_refused(data):
+def test_what_is_no_drawing_or_no_digit_is_refused(tmp_path, data):
     ones = np.ones((28, 28))
     for image, digit in ((0 * ones, 3), (np.nan * ones, 3), (ones, 10), (ones, -1)):
         with pytest.raises(ValueError, match=r"digit|learn"):
-            list(steps_to_fix(DigitClassifier.load(CLASSIC), image, digit, data, np.random.default_rng(0)))
+            list(fix(CLASSIC, image, digit, tmp_path, train=data, test=data))

@@ -66,6 +66,7 @@ def test_wrong_arguments_are_named():
         ({"x": XOR_X[:0], "y": XOR_Y[:0]}, "at least one"),
         ({"y": XOR_Y[:, 0]}, "shape"),
         ({"sampling": "shuffled"}, "shuffled"),
+        ({"batch_size": 0}, "batch_size"),
         ({"x": np.zeros((4, 3))}, "3"),
     ]:
         with pytest.raises(ValueError, match=message):

@@ -116,3 +116,11 @@ def test_a_masked_class_has_no_chance_and_costs_nothing():
     logits, target = np.array([[1.0, -np.inf, 2.0]]), np.array([[0.0, 0.0, 1.0]])
     assert cost(logits, target) == pytest.approx(np.log(1 + np.exp(-1.0)))
     assert cost.derivative(logits, target)[0] == pytest.approx([1 / (1 + np.e), 0.0, -1 / (1 + np.e)])
+
+
+def test_one_optimizer_serves_one_network():
+    adam, first = Adam(0.01), network()
+    first.train_batch(X, Y, adam)
+    with pytest.raises(ValueError, match="another network needs its own"):
+        network().train_batch(X, Y, adam)
+    first.train_batch(X, Y, adam)

@@ -153,7 +153,7 @@ def test_a_rate_that_was_turned_too_high_leads_back_to_before_that():
         (395_000, "x", 1.0),
         (396_000, 0.5, "x"),
     ):
-        run.append(SettingChange(decisions, "learning_rate", before, after))
+        run.append(SettingChange(decisions, "learning_rate", before, after, decisions / 1000))
         assert rule.back_to(RecentCurves(run, config)) == (380_000 if before == "x" or after == "x" else 180_000)
 
 

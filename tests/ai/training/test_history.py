@@ -192,11 +192,12 @@ def test_a_history_knows_in_which_unit_its_values_are(tmp_path):
     assert History.read(tmp_path).reward_scale == 0.1
 
 
-def test_an_amendment_of_a_change_that_is_not_there_stands_for_itself():
+def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value():
     history = History()
-    history.append(SettingChange(10, "tau", 0.1, 0.2, amends=True))
-    assert history.setting_changes == [SettingChange(10, "tau", 0.1, 0.2)]
-    history.append(SettingChange(11, "tau", 0.2, 0.3, amends=True))
-    assert history.setting_changes == [SettingChange(11, "tau", 0.1, 0.3)]
-    history.append(SettingChange(12, "tau", 0.3, 0.1, amends=True))
-    assert history.setting_changes == []
+    for seconds, before, after in ((10.0, 0.1, 0.2), (10.5, 0.2, 0.3), (11.4, 0.3, 0.5), (15.0, 0.5, 0.6)):
+        history.append(SettingChange(0, "tau", before, after, seconds))
+    history.append(SettingChange(0, "discount", 0.9, 0.8, 15.1))
+    marks = [(0.1, 0.5), (0.5, 0.6), (0.9, 0.8)]
+    assert [(each.before, each.after) for each in history.setting_changes] == marks
+    history.append(SettingChange(0, "tau", 0.6, 0.5, 15.2))
+    assert [(each.before, each.after) for each in history.setting_changes] == [marks[0], marks[2]], "back where it was"

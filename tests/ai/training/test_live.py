@@ -331,39 +331,6 @@ def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     assert np.isfinite([after[-1].loss, after[-1].mean_q]).all()
 
 
-def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
-    run, history = begin(clock=(clock := Clock())), History()
-    messages_in(run, 30)
-
-    def turn(name, value, seconds=0.0, turns=0):
-        for message in run.send(("change", name, value)):
-            history.append(message)
-        clock.now += seconds
-        messages_in(run, turns)
-
-    def marks():
-        return [(each.name, each.before, each.after) for each in history.setting_changes]
-
-    for value in (0.97, 0.96, 0.95, 0.9):  # a drag, with a decision at each step
-        turn("discount", value, 0.3, 1)
-    dragged, rate = ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1)
-    assert marks() == [dragged]
-    assert history.setting_changes[0].decisions == 32 * 32
-    turn("learning_rate", 0.1, 5.0, 1)
-    turn("discount", 0.85, 5.0)
-    assert marks() == [dragged, rate, ("discount", 0.9, 0.85)]
-    turn("discount", 0.8)  # it rests: nothing was learnt with the value before
-    turn("discount", 0.9)  # and back to where it was
-    assert marks() == [dragged, rate]
-    turn("discount", 0.82)
-    assert marks() == [dragged, rate, ("discount", 0.9, 0.82)], "the mark of before stays"
-    for _ in range(3):
-        turn("discount", 0.9)
-    session = run
-    assert session.history.setting_changes == history.setting_changes
-    assert session.training.config.discount == 0.9
-
-
 class Clock:
     now = 100.0
 

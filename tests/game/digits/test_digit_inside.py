@@ -14,8 +14,8 @@ from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, Neural
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.digits.answer import DigitBars
-from game.scenes.digits.cells import Cells
 from game.scenes.digits.inside import DigitInsideScene
+from game.scenes.digits.map_row import MapRow
 from game.scenes.digits.sums import figure
 from game.scenes.digits.sums_tab import SumsTab
 from game.scenes.digits.why_not import WhyNotTab
@@ -58,8 +58,8 @@ def scene(driver: Driver) -> SumsTab:
     return driver.top.sums
 
 
-def pictures(driver: Driver) -> list[Cells]:
-    return [each for each in driver.form.widgets if isinstance(each, Cells)]
+def maps(driver: Driver) -> list[MapRow]:
+    return [each for each in driver.form.widgets if isinstance(each, MapRow)]
 
 
 def test_the_unit_that_is_followed_leads_from_a_patch_to_the_answer(inside: Driver, modern, nine):
@@ -104,11 +104,13 @@ def test_all_figures_of_the_sum_are_written(inside: Driver, monkeypatch):
 
 def test_the_mouse_moves_the_window_and_chooses_a_map(inside: Driver):
     walk = scene(inside).walk
-    digit, given = pictures(inside)
-    inside.move(digit.cell(10, 12).center)
+    digit, given = maps(inside)
+    inside.move(digit.pixels((10, 12, 11, 13)).center)
     assert walk.unit.corner == (8, 10), "the window's middle is where the mouse is"
-    inside.move(given.cell(0, 9).center)
+    inside.widget(texts.PATCH_GAVE).set(9)
     assert walk.place == (8, 10, 9)
+    inside.move(given.pixels((3, 4, 4, 5)).center)
+    assert walk.place == (3, 4, 9)
     inside.click(inside.choice(texts.PATCH_STAGES["answer"])._places[3].center)
     assert walk.number == 3
 
@@ -117,7 +119,7 @@ def test_the_mouse_moves_the_window_and_chooses_a_map(inside: Driver):
 def test_the_window_is_moved_without_a_mouse(inside: Driver, device: str):
     walk, player = scene(inside).walk, Player(inside, device)
     player.press("down", "up")  # from now on there is no mouse in use
-    inside.form.focus(pictures(inside)[0])
+    inside.form.focus(maps(inside)[0])
     player.press("confirm")
     before = walk.place
     player.hold("up", down=True)
@@ -153,8 +155,8 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
     for number in range(len(walk.stages) + 1):
         scene(driver).choose(number)
         driver.frames(1)
-        for picture in pictures(driver):
-            driver.move(picture.cell(0, 0).center)
+        for picture in maps(driver):
+            driver.move(picture.pixels((0, 0, 1, 1)).center)
         assert (walk.unit is None) == (walk.stage.kind == "other")
 
 
@@ -231,12 +233,10 @@ def test_a_network_that_cannot_be_asked_says_so(open_game: Open, context: Contex
 # Ten dreams
 
 
-def test_all_ten_dreams_go_on_together_and_begin_anew(open_game: Open, context: Context, modern, nine):
+def test_all_ten_dreams_go_on_together(open_game: Open, context: Context, modern, nine):
     save_settings(context)
     driver = open_game(DigitInsideScene, modern, nine)
     dreams = driver.top.dreams
     driver.top.choose(dreams)
     driver.skip(10 * 4)
     assert {dream.step for dream in dreams.dreams} == {4}
-    driver.key(pygame.K_r)
-    assert max(dream.step for dream in dreams.dreams) < 3

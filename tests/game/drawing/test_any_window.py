@@ -57,12 +57,12 @@ def test_every_window_shows_the_page_of_the_world_and_more(shape: float, across:
 @pytest.mark.parametrize("size", [(960, 320), (320, 640)])
 def test_sky_and_land_fill_the_window_wherever_the_camera_goes(size: tuple[int, int]):
     canvas, nothing = Canvas(pygame.Surface(size)), (255, 0, 255)
-    moon = Backdrop(size, np.random.default_rng(5), reduced_motion=True)
+    moon = Backdrop(size, np.random.default_rng(5))
     for across, zoom in ((-LAND_REACH, WIDEST), (0.0, 1.0), (LAND_REACH, 2.0)):
         camera = Camera()
         camera.cut(CameraTarget(across, zoom).on_land())
         canvas.surface.fill(nothing)
-        moon.draw(canvas, camera, 0.0)
+        moon.draw(canvas, camera)
         assert not (pygame.surfarray.array3d(canvas.surface) == nothing).all(axis=2).any()
         # The plain reaches to both sides: under its line it is darker than the sky above.
         row = round(float(camera.view(1.0).filling(canvas).pixels((0.0, 0.0))[1]))

@@ -53,9 +53,9 @@ def land(size: tuple[int, int], look: str = "moon", leg: int = 0) -> Callable[[]
     moon = Backdrop(size, np.random.default_rng(5), look=LOOKS.get(look, MOON))
 
     def picture() -> np.ndarray:
-        moon.draw(canvas, camera, 1.0)
+        moon.draw(canvas, camera)
         if leg:
-            draw_ground(canvas, camera.view(canvas.scale).filling(canvas), leg_of(7, LegStart(leg)).ground, 1.0)
+            draw_ground(canvas, camera.view(canvas.scale).filling(canvas), leg_of(7, LegStart(leg)).ground)
         return pygame.surfarray.array3d(canvas.surface).astype(int)
 
     return picture

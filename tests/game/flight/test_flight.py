@@ -109,7 +109,7 @@ def test_the_card_names_what_broke_the_craft_beside_the_pad_too(subtests: pytest
     ):
         with subtests.test(start=start):
             flight = fallen(*start)
-            card, (speed, slide, tilt) = outcome_card(flight.env, 1.0), flight.env.impact[0]
+            card, (speed, slide, tilt) = outcome_card(flight.env), flight.env.impact[0]
             assert (flight.outcome, flight.env.cause[0]) == (Outcome.CRASHED, cause)
             assert flight.wrecked
             assert (card.good, card.intact, card.title) == (False, False, texts.OUTCOMES["CRASHED"][0])
@@ -119,7 +119,7 @@ def test_the_card_names_what_broke_the_craft_beside_the_pad_too(subtests: pytest
 
 def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():
     flight = fallen(10, 2.2, 0.3, -0.5, 0.2, 0)
-    card, entry = outcome_card(flight.env, 1.0), describe(flight, 0.0)
+    card, entry = outcome_card(flight.env), describe(flight, 0.0)
     assert (flight.outcome, flight.intact, flight.wrecked) == (Outcome.CRASHED, True, False)
     assert (card.title, card.good, card.intact) == (texts.BESIDE_TITLE, False, True)
     assert (card.reason, card.advice) == (texts.CAUSES["TERRAIN"], texts.ADVICE["TERRAIN"])
@@ -128,7 +128,7 @@ def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():
 
 
 def test_the_card_of_a_landing_and_of_the_other_ends():
-    card = outcome_card(fallen(0.4, STAND + 0.02, 0, 0, 0, 0).env, 0.81)
+    card = outcome_card(fallen(0.4, STAND + 0.02, 0, 0, 0, 0).env)
     assert card.good
     assert card.title == "Perfect"
     assert ("OFF CENTRE", "0.4", "m") in card.figures
@@ -136,11 +136,11 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
         ((29.9, 12, 6, 0, 0, 0), "Left the area at the side, 30 m from its middle."),
         ((0, 28.9, 0, 6, 0, 0), "Left the area at the top, 26 m up."),
     ):
-        assert outcome_card(fallen(*start).env, 1.0).reason == reason
+        assert outcome_card(fallen(*start).env).reason == reason
     flight = begun(1)
     flight.env.steps[:] = round(LIMITS.time * 60) - 1
     flight.step()
-    assert outcome_card(flight.env, 1.0).reason.startswith("Time ran out")
+    assert outcome_card(flight.env).reason.startswith("Time ran out")
 
 
 def test_a_landing_is_centred_within_two_fifths_of_the_way_to_the_edge_of_the_pad():
@@ -173,7 +173,7 @@ def test_what_is_just_over_a_limit_does_not_read_as_the_limit():
         (Cause.TILTED, (0, 0, np.radians(28.7)), "Tilted 28.7° at contact; 28.6° is the limit."),
     ):
         env.cause[:], env.impact[:] = cause, impact
-        assert outcome_card(env, 1.0).reason == reason
+        assert outcome_card(env).reason == reason
 
 
 def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):

@@ -205,10 +205,6 @@ def test_the_blame_is_that_of_the_real_backward_pass(made: Made):
     assert bias == pytest.approx(model.blames[3] * (1 - model.answers**2), abs=1e-5)
     assert not model.blames[0][image[0] == 0].any(), "a pixel without ink is not to blame"
     assert all(image[0, start] > 0 and slope != 0 for start, _, slope in model.links[0]), "nor is its connection"
-    silent = chapter.unit(1, 3)
-    for _ in range(3):
-        chapter.go_on()
-    assert f"{abs(float(model.blames[1][3])):.3f}" in chapter.unit(1, 3).removeprefix(silent)
 
 
 def test_a_step_makes_the_right_answer_likelier_and_moves_about_one_weight_in_five(made: Made):
@@ -357,10 +353,7 @@ def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
             chapter.turn()
     best, worst = chapter.model.results[chapter.model.best], chapter.model.results[chapter.model.worst]
     assert best.landed
-    assert (texts.LEARN_CHOICE_SURPRISE in chapter.why()) == (best.points < worst.points)
     assert chapter.verdict() == (0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2)
-    chapter.model.results[chapter.model.worst] = worst._replace(points=best.points + 1.0)
-    assert texts.LEARN_CHOICE_SURPRISE in chapter.why()
     assert chapter.tried
     chapter.turn()
     assert chapter.verdict() is None

@@ -64,17 +64,6 @@ def clipboard(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return held
 
 
-@pytest.mark.parametrize("pace", [1.0, 0.5])
-def test_what_makes_the_first_attempt_easier_is_said_before_its_first_key(
-    open_game: Open, context: Context, written: list[str], pace: float
-):
-    context.settings.pace = pace
-    context.settings_file.save(context.settings)
-    driver = open_game(today)
-    driver.frames(2)
-    assert (texts.DAILY_EASED in written) is (pace < 1)
-
-
 def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, context: Context):
     driver = open_game(page)
     driver.frames(2)

@@ -1,8 +1,6 @@
 """The first ten flights: the ladder, the offer of help, a craft that hangs after every interruption, and the rescue."""
 
 from collections.abc import Callable
-from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pygame
@@ -19,8 +17,6 @@ from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import ladder_rung
-from game.flight.networks import sentence
-from game.flight.outcomes import outcome_card
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.scene import PlayScene
@@ -30,7 +26,6 @@ from game.ui.context import Context
 from tests.game.play.ends import BESIDE, ON_PAD, TOO_FAST, end, place
 from tests.support.driver import Driver
 from tests.support.flights import begun, challenge_of, concluded, fly_out, play
-from tests.support.player import Player
 from tests.support.reading import Weighs
 
 Open = Callable[..., Driver]
@@ -103,7 +98,7 @@ def test_another_try_is_the_very_same_start_and_the_top_is_flights_from_anywhere
     assert play(driver).flight.recording.spawn == "random"
     end(driver, TOO_FAST)
     assert settings.rung == TOP_RUNG
-    assert play(driver).ending.card.rung is None
+    assert not play(driver).ending.card.climb
 
 
 def noted(rung: int, flight: Flight, *ends: Flight) -> Settings:
@@ -129,7 +124,7 @@ def test_only_crashes_of_ones_own_lead_down_and_only_landings_of_ones_own_up():
     settings = Settings(rung=0)
     card = concluded(FreeFlight(settings), flight)
     assert flight.outcome is Outcome.LANDED
-    assert (settings.rung, card.climb) == (0, sentence(texts.LADDER_NOT_FLOWN, texts.THE_NETWORK))
+    assert (settings.rung, card.climb) == (0, texts.LADDER_LOWEST)
 
 
 def test_who_has_landed_often_before_begins_high_up_and_the_page_of_play_says_where(context: Context):
@@ -203,93 +198,23 @@ def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: 
         assert play(driver).flight.at > steps, way
 
 
-# The rescue
+# The last lesson
 
 
-def at_lesson(open_game: Open, name: str) -> Driver:
+def test_a_guard_is_called_by_the_player_and_a_landing_with_it_ends_the_first_flight(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
-    while challenge_of(driver).lesson.name != name:
-        challenge_of(driver).skip()
-    return driver
-
-
-def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
-    driver = at_lesson(open_game, "dial")
-    challenge, controls, flight = challenge_of(driver), driver.app.context.controls, play(driver).flight
-    while challenge.lesson.name != "rescue":
-        challenge.follow(flight)
-    first, later = (words.split("{")[0] for words in texts.TUTORIAL["rescue"])
-    assert challenge.sentence(flight, controls).startswith(first)
-    for _ in range(1000):  # whatever it does up there
-        challenge.follow(flight)
-    assert flight.chooser.hand.name == "NETWORK"
-    assert challenge.sentence(flight, controls) == texts.TUTORIAL_LONG.format(who=texts.THE_NETWORK)
-    flight.choice = flight.choice._replace(overridden=True)  # only who was saved is said not to have crashed
-    challenge.follow(flight)
-    flight.choice = flight.choice._replace(overridden=False)
-    assert challenge.sentence(flight, controls) == texts.TUTORIAL_BROUGHT.format(who=texts.THE_NETWORK)
-    flight.chooser.hand_over()  # the player may still take it back
-    challenge.follow(flight)
-    assert flight.chooser.hand is StickHolder.HUMAN
-    assert challenge.sentence(flight, controls).startswith(later)
-
-
-def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: Open, written: list[str]):
-    player = Player(at_lesson(open_game, "dial"), "keys")
-    play(player).retry()
-    player.frames(2)
-    player.hold("left", down=True)
-    player.frames(10)
-    player.hold("left", down=False)
-    assert play(player).waiting  # until the dial is turned
-    player.key(pygame.K_PLUS)
-    written.clear()
-    player.frames(3)
-    assert any(word.startswith(texts.TUTORIAL_PATHS.split(".")[0]) for word in written)
-    assert play(player).flight.chooser.shared
-    assert play(player).flown.path_preview.asks
-    player.hold("left", down=True)
-    player.frames(60)
-    assert challenge_of(player).lesson.name == "rescue"
-    assert player.app.context.settings.help == "off"
-
-
-def test_nobody_hands_over_where_a_guard_is_to_be_seen(open_game: Open):
-    driver = at_lesson(open_game, "dial")
-    play(driver).retry()
+    for _ in range(6):
+        driver.key(pygame.K_n)
+    driver.key(pygame.K_UP)
     driver.frames(2)
-    assert texts.HINT_HAND_OVER not in driver.hints()
-    driver.key(pygame.K_TAB)
-    driver.frames(30)
-    assert play(driver).waiting
-    assert (play(driver).flight.chooser.hand, challenge_of(driver).lesson.name) == (StickHolder.HUMAN, "dial")
-    driver.keys(pygame.K_PLUS, pygame.K_LEFT)
-    while challenge_of(driver).lesson.name != "rescue":
-        driver.skip()
-    driver.key(pygame.K_TAB)
+    challenge, controls = challenge_of(driver), driver.app.context.controls
+    called, crash = (words.split("{")[0] for words in texts.TUTORIAL["guard"])
+    assert challenge.sentence(play(driver).flight, controls).startswith(called)
+    driver.key(pygame.K_PLUS)
     driver.frames(2)
-    assert (play(driver).flight.chooser.hand, challenge_of(driver).rules.through) == (StickHolder.HUMAN, False)
-
-
-def test_the_last_card_praises_only_who_has_landed_alone(open_game: Open):
-    driver = at_lesson(open_game, "dial")
-    challenge, down = challenge_of(driver), begun(0)
-    place(down.env, *ON_PAD)
-    while not down.over:
-        down.step()
-    card = outcome_card(down.env, 1.0)
-    for human, saved, title, reason in (
-        (1.0, 0, texts.TUTORIAL_DONE, texts.TUTORIAL_NOT_NEEDED),
-        (0.7, 0, texts.TUTORIAL_GOOD["land"], texts.TUTORIAL_HELPED.format(who=texts.THE_NETWORK, percent=30)),
-        (0.7, 1, texts.TUTORIAL_SAVED_TITLE, texts.TUTORIAL_SAVED),
-    ):
-        landed = SimpleNamespace(share=human, chooser=play(driver).flight.chooser)
-        shown = replace(card, stepped_in=saved)
-        challenge._add_to(SimpleNamespace(flight=landed), shown)
-        assert (shown.title, shown.reason) == (title, reason), (human, saved)
-
-
-def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
-    driver = at_lesson(open_game, "dial")
-    driver.key(pygame.K_n)
-    assert play(driver).challenge.rules.free
+    assert play(driver).flight.chooser.shared
+    assert challenge.sentence(play(driver).flight, controls).startswith(crash)
+    play(driver).flown.interventions.moments.append(np.zeros(2))
+    end(driver, ON_PAD)
+    assert (play(driver).ending.card.title, challenge.rules.through) == (texts.TUTORIAL_SAVED_TITLE, True)
+    assert driver.app.context.settings.help == "off"

@@ -65,7 +65,7 @@ def test_a_landing_that_is_soft_centred_and_upright_is_perfect():
         while not flight.over:
             flight.step()
         assert qualities(flight.env) == met
-        assert (outcome_card(flight.env, 1.0).title == texts.PERFECT) is (len(met) == 3)
+        assert (outcome_card(flight.env).title == texts.PERFECT) is (len(met) == 3)
 
 
 def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_can_be_given_it(

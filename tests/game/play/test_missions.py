@@ -109,21 +109,6 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     assert rows(driver)["brake"][1] == texts.MEDALS[3]
 
 
-def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game: Open):
-    driver = open_game(MissionsScene)
-    driver.key(pygame.K_RETURN)
-    for _ in range(2):  # to the network and back
-        driver.frames(3)
-        driver.key(pygame.K_TAB)
-    driver.frames(3)
-    land(driver)
-    card = play(driver).ending.card
-    assert card.score.endswith(texts.MISSION_TOGETHER)
-    assert (card.ring, card.medal) == (True, 0)
-    driver.key(pygame.K_ESCAPE)
-    assert rows(driver)["fall"][1] == texts.MISSION_TOGETHER
-
-
 def carded(name: str, fuel: float, seconds: float, cause: Cause = Cause.NONE) -> OutcomeCard:
     """The card of a mission that ended in a landing, or was lost for a cause."""
     flight = begun(0, None, mission=name)
@@ -131,7 +116,7 @@ def carded(name: str, fuel: float, seconds: float, cause: Cause = Cause.NONE) ->
     env.outcome[:], env.cause[:] = Outcome.CRASHED if cause else Outcome.LANDED, cause
     env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
     challenge = FlownMission(MISSIONS[name])
-    card = OutcomeCard(not cause, "", "", (), 1.0, advice="else")
+    card = OutcomeCard(not cause, "", "", (), advice="else")
     return concluded(challenge, flight, card)
 
 

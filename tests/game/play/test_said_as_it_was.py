@@ -1,6 +1,5 @@
 """What is said after a flight is what happened in it."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import pygame
@@ -13,8 +12,6 @@ from ai.lander.push import KEYS
 from game.core import texts
 from game.core.settings import Settings
 from game.flight.credit import Credit
-from game.flight.flight_file import Entry
-from game.flight.goals import Goals
 from game.flight.outcomes import cause_of, crash_reason, outcome_card
 from game.scenes.play.challenge import FlownMission, Rules
 from game.scenes.play.scene import PlayScene
@@ -76,7 +73,7 @@ def test_no_bronze_is_called_perfect(monkeypatch):
     put(flight.env, (0.0, STAND + 0.02))
     while not flight.over:
         flight.step()
-    assert outcome_card(flight.env, 1.0).title == texts.PERFECT
+    assert outcome_card(flight.env).title == texts.PERFECT
     for medal, title in ((3, texts.PERFECT), (1, texts.OUTCOMES["LANDED"][0])):
         monkeypatch.setattr(Credit, "medal", medal)
         assert concluded(FlownMission(MISSIONS["fall"]), flight).title == title
@@ -111,15 +108,3 @@ def test_a_craft_that_touches_rock_overhead_is_not_down():
     env.cause[:] = Cause.TERRAIN
     assert cause_of(env)
     assert crash_reason(env) == texts.STRUCK_ABOVE
-
-
-def test_after_the_ladder_goals_grow_and_the_best_of_day_and_week_is_told():
-    landing = Entry(1e9, "LANDED", 11.0, 4.0, 0.5, 1.0, alone=True, score=85)
-    goals = Goals([])
-    assert goals.next == texts.GOALS["score"].format(value=80)
-    assert goals.add(landing)
-    assert goals.next == texts.GOALS["score"].format(value=90)
-    assert not goals.add(replace(landing, score=70))
-    assert goals.bests(1e9) == {label: texts.SCORE.format(count=85) for label in (texts.CARD_TODAY, texts.CARD_WEEK)}
-    assert goals.bests(1e9 + 30 * 86400) == {}
-    assert Goals([replace(landing, course="fall"), replace(landing, spawn="rung_3")]).next == Goals([]).next

@@ -53,7 +53,7 @@ def test_a_landing_with_assists_is_reported_kindly_and_kept_apart(open_game: Ope
     player.frames(200)
     card = play.ending.card
     assert card.good
-    assert card.assists == texts.ASSISTS_USED.format(
+    assert card.advice == texts.ASSISTS_USED.format(
         assists=", ".join([texts.ASSIST_WORDS["wider_pads"], texts.ASSIST_WORDS["untimed"], texts.ASSIST_HALF_SPEED])
     )
     [entry] = Records(context.user_dir).entries()
@@ -74,7 +74,7 @@ def test_a_press_for_thrust_is_named_and_counts_like_any_other(open_game: Open, 
         game.skip(10)
     game.skip(200)
     assert set(actions(play.flight)[2:]) == {3}  # it stayed on
-    assert texts.ASSIST_WORDS["toggle_thrust"] in play.ending.card.assists
+    assert texts.ASSIST_WORDS["toggle_thrust"] in play.credit.assists
     assert play.credit.counts
 
 
@@ -158,7 +158,7 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
     switch.hold(False)
     assert flight.outcome is Outcome.LANDED
     game.skip(200)
-    assert texts.ASSIST_WORDS["one_switch"] in play.ending.card.assists
+    assert texts.ASSIST_WORDS["one_switch"] in play.credit.assists
     switch.choose(texts.CARD_FIRST[True])
     assert play.flight is not flight
     play.flight.env.begin_at(0, np.array([0.0, 12.0, 0.0, -4.0, 0.0, 0.0]))

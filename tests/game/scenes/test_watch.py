@@ -27,7 +27,7 @@ def scene(driver: Driver) -> WatchScene:
 
 
 def steps(driver: Driver) -> int:
-    return scene(driver).swarm.steps
+    return scene(driver).swarm.env.steps[0]
 
 
 def test_space_stops_and_a_period_goes_one_decision(watching: Driver):

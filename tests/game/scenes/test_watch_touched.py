@@ -9,7 +9,6 @@ import pytest
 
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.core.catalogue import capital
 from game.scenes.watch.scene import WatchScene
 from game.scenes.watch.touch import FASTEST, NOTCH, Hand
 from game.ui.context import Context
@@ -180,37 +179,6 @@ def test_the_stick_moves_the_pointer_and_going_on_lets_go(watching: Driver):
     watching.frames(2)
     assert not scene(watching).playback.stopped
     assert not hand(watching).typing
-
-
-def undo(driver: Driver) -> None:
-    driver.press_on(capital(texts.HINT_UNTOUCH))
-
-
-def test_the_way_back_leads_to_the_very_moment_before_the_hand_came(watching: Driver):
-    twin = scene(watching).swarm
-    watching.key(pygame.K_SPACE)
-    before, decision = state(watching), scene(watching).decision
-    assert watching.form.find(capital(texts.HINT_UNTOUCH)) is None
-    middle = hand(watching).middle
-    drag(watching, middle, (middle[0] - 150, middle[1]))
-    watching.post(pygame.MOUSEWHEEL, x=0, y=1)
-    watching.key(pygame.K_SPACE)
-    watching.frames(30)  # and flies on, before it is undone
-    undo(watching)
-    assert scene(watching).playback.stopped
-    assert np.array_equal(state(watching), before)
-    assert scene(watching).decision.action == decision.action
-    assert not scene(watching).world.touched
-    flown = []
-    for _ in range(2):  # and as if nobody had ever touched it
-        moment = twin.snapshot()
-        for _ in range(60):
-            twin.step()
-        flown.append(state(watching))
-        twin.restore(moment)
-    assert np.array_equal(*flown)
-    watching.frames(1)
-    assert watching.form.find(capital(texts.HINT_UNTOUCH)) is None
 
 
 def test_a_touched_flight_is_not_counted_and_says_so(open_game: Open, context: Context, tmp_path, monkeypatch):

@@ -11,13 +11,13 @@ from ai.lander.ground import hilly
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.push import KEYS
-from ai.lander.sensing import NEAR, near_edges
+from ai.lander.sensing import near_edges
 from game.audio.flight_sounds import FlightSound
 from game.drawing.canvas import Canvas
 from game.scenes.play.words import dangers
 from game.world.camera import View
 from game.world.landscape.ground import draw_edges
-from game.world.particles import ParticleKind, Particles, Relief
+from game.world.particles import ParticleKind, Particles
 from game.world.stage import Stage
 from game.world.wreck import Wreck
 from tests.support.flights import begun
@@ -39,28 +39,16 @@ def over_hills() -> LanderEnv:
     return env
 
 
-def test_the_relief_of_a_moving_pad_moves():
-    env = MISSIONS["ferry"].begin()
-    before = Relief(env).height(np.array([3.6]))[0]
-    for _ in range(270):
-        env.step(np.array([3]))
-    assert env.pad_shift[0] > 3
-    assert Relief(env).height(np.array([3.6]))[0] > before or env.ground.pads[0].right >= 3.6
-    assert Relief(env).deck(float(env.pad[0, 0])) is not None
-    assert Relief(env).deck(float(env.pad[0, 0]) + 9) is None
-
-
 def test_fragments_fly_and_bounce_above_the_hills_and_come_to_rest():
     env = over_hills()
-    relief = Relief(env)
-    particles = Particles(np.random.default_rng(0), relief, env.params.gravity)
+    particles = Particles(np.random.default_rng(0), env)
     particles.burst(np.array([-4.6, 6.0]), np.array([2.0, -6.0]))
     rose = 0
     for _ in range(200):
         particles.update()
         live = particles.alive
         place = particles.position[live]
-        assert (place[:, 1] >= relief.height(place[:, 0]) - 1e-9).all()
+        assert (place[:, 1] >= particles.floor(place[:, 0]) - 1e-9).all()
         shards = live & (particles.kind == ParticleKind.SHARD)
         rose += int((particles.velocity[shards, 1] > 0.2).sum())
     assert rose > 50
@@ -171,14 +159,6 @@ def test_an_edge_is_named_shines_and_sounds_before_it_is_crossed(state: tuple[fl
     canvas = Canvas(pygame.Surface((1280, 720)))
     draw_edges(canvas, View(1.0, (0.0, 16.0), 0.6), env, (255, 90, 60))
     assert np.ptp(pygame.surfarray.array3d(canvas.surface), axis=(0, 1)).max() > 40
-
-
-def test_far_from_every_edge_nothing_is_announced():
-    env = at(30 - NEAR - 1, 10, 2, 0, 0, 0)
-    assert near_edges(env) == []
-    canvas = Canvas(pygame.Surface((1280, 720)))
-    draw_edges(canvas, View(1.0), env, (255, 90, 60))
-    assert not np.ptp(pygame.surfarray.array3d(canvas.surface), axis=(0, 1)).any()
 
 
 def test_people_have_more_room_than_networks_are_trained_with():
