@@ -60,7 +60,7 @@ class FlightSound:
         env = self._env
         self._slot, self._time = slot, float(env.time[slot])
         self._outcome = Outcome(int(env.outcome[slot]))
-        self._down, self._fall = env.contacts[slot].copy(), 0.0
+        self._down, self._fall = env.feet_down[slot].copy(), 0.0
         self._touched = bool(self._down.any())
 
     def _end(self, outcome: Outcome) -> None:
@@ -78,7 +78,7 @@ class FlightSound:
     def _touch(self) -> None:
         """Play a thud for every foot that touches, as loud as its speed; and the contact note, once."""
         env, slot = self._env, self._slot
-        down = env.contacts[slot]
+        down = env.feet_down[slot]
         if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
             self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / self._touch_speed))
             if not self._touched:

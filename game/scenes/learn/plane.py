@@ -55,12 +55,6 @@ def network_of(units: int, seed: int) -> NeuralNetwork:
     return network
 
 
-def _places() -> Array:
-    """Return the middles (cells², 2) of the cells of the plane's picture, column by column."""
-    across, up = np.meshgrid(*[np.linspace(-1.0, 1.0, _CELLS)] * 2, indexing="ij")
-    return np.stack([across.ravel(), up.ravel()], axis=1).astype(np.float32)
-
-
 class Divided:
     """Training on points of two kinds, and what the network answers on the whole plane.
 
@@ -75,7 +69,8 @@ class Divided:
     """
 
     def __init__(self) -> None:
-        self._places = _places()
+        cells = np.linspace(-1.0, 1.0, _CELLS)  # the middles of the picture's cells, column by column
+        self._places = np.stack(np.meshgrid(cells, cells, indexing="ij"), axis=-1).reshape(-1, 2).astype(np.float32)
         self.points, self.targets = examples(0)
         self.units = self._seed = self.version = 0
         self.results: dict[int, int] = {}

@@ -124,7 +124,7 @@ def test_contact_light_is_announced_when_both_feet_are_down_and_then_no_more(gam
     game.frames(5)
     assert texts.CONTACT_LIGHT not in written
     game.frames(60)
-    assert scene(game).flight.env.contacts.all()
+    assert scene(game).flight.env.feet_down.all()
     assert texts.CONTACT_LIGHT in written
     game.frames(200)
     written.clear()
