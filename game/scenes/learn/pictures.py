@@ -13,7 +13,7 @@ from ai.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, LanderEnv
 from engine import DT
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import CAPTION, FAINT, LINE, MUTE, Colour
+from game.drawing.tokens import FAINT, LABEL, LINE, MUTE, Colour
 from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import draw_craft, draw_crowd, draw_fires
@@ -66,4 +66,4 @@ def draw_axis(canvas: Canvas, box: pygame.FRect, ticks: Sequence[tuple[float, st
     for height, word in ticks:
         y = box.bottom - box.height * height
         canvas.line((box.left, y), (box.right, y), LINE)
-        canvas.text(word, (box.left - 6, y + 4), size=CAPTION, colour=MUTE, align="right", tabular=True)
+        canvas.text(word, (box.left - 6, y + 4), size=LABEL, colour=MUTE, align="right", tabular=True)
