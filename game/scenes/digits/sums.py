@@ -33,23 +33,26 @@ def figure(value: float, digits: int = 2) -> str:
 def describe_sum(column: Column, walk: UnitWalk) -> None:
     """Add the sum of the unit looked at, which may be another one of the same stage later."""
     unit = walk.unit
-    if walk.at_answer:
-        column.caption(texts.PATCH_SCORES)
-        scores, answer = walk.stages[-1].outputs.reshape(-1).tolist(), int(walk.probabilities.argmax())
-        for digit, (score, probability) in enumerate(zip(scores, walk.probabilities.tolist(), strict=True)):
-            column.pair(f"{digit}:  {figure(score)}", f"{100 * probability:.1f}%", NET if digit == answer else None)
-        column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
-    elif unit is None:
+    if unit is None:
         return
-    elif unit.weights is None:
-        pooling = walk.stage.kind == "pooling"
-        first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
-        _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0])
-        second.gap(24)
-        word = texts.PATCH_LARGEST.format(count=unit.patch[:, :, 0].size) if pooling else texts.PATCH_BENT
-        second.pair(word, lambda: figure(_unit(walk).output, 3), NET)
-    else:
+    if unit.weights is not None:
         _describe_products(column, walk)
+        return
+    first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
+    _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0])
+    second.gap(24)
+    pooling = walk.stage.kind == "pooling"
+    word = texts.PATCH_LARGEST.format(count=unit.patch[:, :, 0].size) if pooling else texts.PATCH_BENT
+    second.pair(word, lambda: figure(_unit(walk).output, 3), NET)
+
+
+def describe_answer(column: Column, walk: UnitWalk) -> None:
+    """Add the score and the probability of each digit."""
+    column.caption(texts.PATCH_SCORES)
+    scores, answer = walk.stages[-1].outputs.reshape(-1).tolist(), int(walk.probabilities.argmax())
+    for digit, (score, probability) in enumerate(zip(scores, walk.probabilities.tolist(), strict=True)):
+        column.pair(f"{digit}:  {figure(score)}", f"{100 * probability:.1f}%", NET if digit == answer else None)
+    column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
 
 
 def _unit(walk: UnitWalk) -> UnitSum:
@@ -84,8 +87,7 @@ def _describe_products(column: Column, walk: UnitWalk) -> None:
         second.pair(texts.PATCH_OTHERS.format(count=maps - 1), lambda: figure(others(), 3))
     second.pair(texts.PATCH_BIAS, lambda: figure(_unit(walk).bias, 3))
     second.line()
-    second.pair(texts.PATCH_TOTAL, lambda: figure(_unit(walk).total, 3), NET)
-    second.pair(texts.PATCH_GAVE, lambda: figure(_unit(walk).output, 3))
+    second.pair(texts.PATCH_TOTAL, lambda: figure(_unit(walk).output, 3), NET)
 
 
 def _add_matrix(column: Column, words: str, values: Callable[[], Numbers]) -> None:
