@@ -22,7 +22,6 @@ from game.core.assets import MODELS_DIR
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.explain.figures import decimal, percent
-from game.explain.tables import from_zero
 from game.flight.logbook import Records
 from game.scenes.learn import choice, downhill, pictures, plane
 from game.scenes.learn import runs as runs_module
@@ -322,21 +321,6 @@ def fly(chapter: ChoiceChapter) -> None:
     assert not chapter.model.running
 
 
-def test_bars_begin_at_0_and_keep_their_scale_when_a_result_arrives(made: Made):
-    chapter = made(ChoiceChapter)
-    before = [line.bars[0] for line in chapter._lines()]
-    assert [start for start, _ in before] == [0.0] * 6
-    for (_, end), value in zip(before, chapter.model.values.tolist(), strict=True):
-        assert end == pytest.approx(before[0][1] * value / chapter.model.values[0], rel=1e-5)
-    chapter.begin_with(chapter.model.worst)
-    fly(chapter)
-    lines = chapter._lines()
-    assert [line.bars[0] for line in lines] == before
-    assert [line.bars[1][1] > 0 for line in lines] == [action == chapter.model.worst for action in range(6)]
-    assert from_zero(-10.0, -50.0, 50.0) == (0.4, 0.5)
-    assert from_zero(0.0, -50.0, 50.0) == (0.5, 0.5)
-
-
 def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
     chapter = made(ChoiceChapter)
     for number in range(3):
@@ -349,6 +333,7 @@ def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
             # The chapter adds the pay of each physics step, the other that of each decision of four.
             assert chapter.model.results[action].points == pytest.approx(came, abs=0.5)
             assert chapter.model.results[action].landed == safely
+            assert [bool(line.cells[2]) for line in chapter._lines()].count(True) == len(chapter.model.results)
         if number < 2:
             chapter.turn()
     best, worst = chapter.model.results[chapter.model.best], chapter.model.results[chapter.model.worst]
