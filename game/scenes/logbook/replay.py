@@ -69,7 +69,7 @@ class ReplayScene(WorldScene):
         self.flight_replay.scout(1)
         self._readouts = readouts.flight_readouts(self.flight_replay.flight.env)
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion)
-        self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
+        self._heard = FlightSound(context.sound, self.flight_replay.flight.env, warns=False)
         self.build()
 
     def enter(self) -> None:
