@@ -66,7 +66,6 @@ from game.scenes.play.challenge import FlownMission
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import FlightPauseScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.train.laboratory import Chosen
 from game.scenes.train.landers import LanderView
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import WatchScene
@@ -200,8 +199,8 @@ def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
     assert isinstance(scene.view, LanderView)
-    scene.view.laboratory.chosen = Chosen("rate_times_100")
-    scene.view._split_now("rate_times_100")
+    scene.view.laboratory.sabotage = "rate_times_100"
+    scene.view.laboratory.fly("never")
     return scene
 
 

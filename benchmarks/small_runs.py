@@ -7,15 +7,24 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from math import sqrt
+from statistics import mean, stdev
 
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from ai.training.statistics import wilson
-from benchmarks.sabotages import mean_of_shares
 from game.scenes.learn.memory import KEPT, TODAY, YESTERDAY, MemoryChapter
 from game.scenes.learn.runs import BOUND, DARING, PAY, RIGHT
 
 DECISIONS = 600
+# Student's t of a two-sided 95 % interval, by degrees of freedom from 1 on.
+_T = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
+
+
+def mean_of_shares(shares: Sequence[float]) -> tuple[float, float, float]:
+    """Return the mean of two or more shares, and its 95 % interval within 0 to 1 (Student's t)."""
+    half = _T[min(len(shares) - 1, len(_T)) - 1] * stdev(shares) / sqrt(len(shares))
+    return mean(shares), max(0.0, mean(shares) - half), min(1.0, mean(shares) + half)
 
 
 def run(config: Config, seed: int, plan: Plan | None = None, decisions: int = DECISIONS) -> list[SmallState]:
@@ -44,8 +53,10 @@ def memory(seeds: Sequence[int]) -> None:
             shares = [state.passed or 0.0 for state in run(SMALL_RUN, seed, plan, YESTERDAY + TODAY)[YESTERDAY - 1 :]]
             least.append(min(shares[1:]))
             ranges.append(f"{shares[0]:.2f} to {least[-1]:.2f}")
-        mean, low, high = mean_of_shares(least)
-        print(f"memory of {keep or 'all'}: {', '.join(ranges)}; least {mean:.0%} ({low:.0%} to {high:.0%})", flush=True)
+        middle, low, high = mean_of_shares(least)
+        print(
+            f"memory of {keep or 'all'}: {', '.join(ranges)}; least {middle:.0%} ({low:.0%} to {high:.0%})", flush=True
+        )
 
 
 def daring(seeds: Sequence[int]) -> None:

@@ -30,7 +30,6 @@ OPENED = {
     "game.export.gif": ({"path.open"}, "writes"),
     "game.scenes.learn.one_file": ({"MICROLANDER.read_text"}, "comes with the program"),
     "game.scenes.train.laboratory": ({"self.open"}, "a part of the panel"),
-    "game.scenes.train.landers": ({"self.scene.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }

@@ -231,7 +231,7 @@ class Lookahead:
             flown += flies
             yield
             late = env.time > env.limits.time - SPARE
-            grounded = np.where(env.contacts.any(axis=1), grounded + 1, 0)
+            grounded = np.where(env.feet_down.any(axis=1), grounded + 1, 0)
             landed |= flies & (env.outcome == Outcome.LANDED) & ~late
             flies &= (env.outcome == Outcome.FLYING) & ~late & (grounded < _STUCK) & (len(shares) < _MOST)
             if not env.conditions.moves:

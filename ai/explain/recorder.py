@@ -50,17 +50,8 @@ class Line:
 
 @dataclass(eq=False)
 class Call:
-    """Call of a recorded function; to be read when it is over.
+    """Call of a recorded function, with the lines that ran, in order; to be read when it is over."""
 
-    Attributes:
-        owner: the `self` of the function, if it has one.
-        caller: the recorded call within which it ran, if there is one.
-        lines: the lines that ran, in order.
-
-    """
-
-    owner: Any
-    caller: Call | None
     lines: list[Line] = field(default_factory=list)
 
     @property
@@ -72,11 +63,6 @@ class Call:
     def values(self) -> dict[str, Any]:
         """The last value of each variable, by name; of its result by RETURN."""
         return {name: value for line in self.lines for name, value in line.values.items()}
-
-    @cached_property
-    def numbers(self) -> dict[str, int]:
-        """The number of the line that set each variable last, by name."""
-        return {name: line.number for line in self.lines for name in line.values}
 
 
 class Recorder:
@@ -93,7 +79,6 @@ class Recorder:
     def __init__(self, functions: Iterable[Function], row: int = 0) -> None:
         self._row = row
         self.lines: list[Line] = []
-        self._open: list[Call] = []  # calls that are not over, the innermost last
         self._calls: dict[CodeType, list[Call]] = {inspect.unwrap(each).__code__: [] for each in functions}
 
     def __enter__(self) -> Self:
@@ -106,9 +91,9 @@ class Recorder:
     ) -> None:
         sys.settrace(self._before)
 
-    def calls(self, *functions: Function) -> list[Call]:
-        """Return the calls of some functions, those of one after those of another; [] for what is not recorded."""
-        return [call for each in functions for call in self._calls.get(inspect.unwrap(each).__code__, ())]
+    def calls(self, function: Function) -> list[Call]:
+        """Return the calls of a function; [] for one that is not recorded."""
+        return self._calls.get(inspect.unwrap(function).__code__, [])
 
     def call(self, function: Function) -> Call:
         """Return the last call of a function; raises LookupError if there was none."""
@@ -121,16 +106,15 @@ class Recorder:
         calls = self._calls.get(frame.f_code)
         if calls is None or event != "call":
             return None
-        calls.append(Call(frame.f_locals.get("self"), self._open[-1] if self._open else None))
-        self._open.append(calls[-1])
-        return _Follower(frame, self._open, self.lines, self._row).follow
+        calls.append(Call())
+        return _Follower(frame, calls[-1], self.lines, self._row).follow
 
 
 class _Follower:
     """Follower of one call, which records each line of it."""
 
-    def __init__(self, frame: FrameType, calls: list[Call], lines: list[Line], row: int) -> None:
-        self._calls, self._lines, self._row = calls, lines, row
+    def __init__(self, frame: FrameType, call: Call, lines: list[Line], row: int) -> None:
+        self._call, self._lines, self._row = call, lines, row
         self._seen: dict[str, Any] = dict(self._attributes(frame))  # the latest values; these arrays are no news
         self._number = frame.f_code.co_firstlineno  # of the line that runs
 
@@ -141,11 +125,9 @@ class _Follower:
             if event == "return":
                 values |= dict(_parts(RETURN, result, self._row))
             line = Line(frame.f_code.co_qualname, self._number, values)
-            self._calls[-1].lines.append(line)
+            self._call.lines.append(line)
             self._lines.append(line)
             self._number = frame.f_lineno
-        if event == "return":
-            self._calls.pop()
         return self.follow
 
     def _changed(self, frame: FrameType) -> dict[str, Any]:

@@ -47,7 +47,7 @@ __all__ = [
 # What begins at zero with each flight.
 _DOWN: Final = 1.0  # metres between feet and ground from which on a craft is not down, however it stands
 _BEGUN: Final = (
-    "actions", "shares", "outcome", "cause", "contacts", "touched", "impact", "steps", "main_steps", "side_steps",
+    "actions", "shares", "outcome", "cause", "feet_down", "touched", "impact", "steps", "main_steps", "side_steps",
     "still_steps", "feet_steps", "tilted_steps",
 )  # fmt: skip
 
@@ -114,7 +114,7 @@ class LanderEnv:
         self.shares: Doubles = zeros(2, dtype=float)  # of thrust: main engine 0 to 1; jets -1, left, to 1, right
         self.outcome: Ints = zeros()  # an `Outcome`
         self.cause: Ints = zeros()  # of a crash, a `Cause`
-        self.contacts: Bools = zeros(2, dtype=bool)  # whether the left and the right foot are on a pad
+        self.feet_down: Bools = zeros(2, dtype=bool)  # whether the left and the right foot are on a pad
         self.touched: Ints = zeros()  # number of the pad that a foot was last on
         # Greatest speed towards what was touched, along it, both m/s, and tilt in radians at any touch.
         self.impact: Doubles = zeros(3, dtype=float)
@@ -364,9 +364,9 @@ class LanderEnv:
         """
         pad = self.target if pad is None else pad
         pads = self.ground.at_once
-        contacts = self.contacts if pads == 1 else self.contacts * np.equal(self.touched, pad)[:, None]
+        down = self.feet_down if pads == 1 else self.feet_down * np.equal(self.touched, pad)[:, None]
         offset = self.position - self._top(pad, self.params.stand)
-        seen = sensed(offset, self.relative_velocity, *self.turned, contacts, pads=pads)
+        seen = sensed(offset, self.relative_velocity, *self.turned, down, pads=pads)
         wide = self.wide if wide is None else wide
         return np.concatenate([seen, surroundings(self, pad)], axis=1) if wide else seen
 

@@ -105,7 +105,7 @@ class FreeFlight:
         """Leave the judgements of the last steps in the environment: in so many of them it was tilted too far."""
         env = self._env
         env.tilted_steps[0] += tilted
-        env.contacts, env.still_steps[0] = np.zeros((1, 2), dtype=bool), 0
+        env.feet_down, env.still_steps[0] = np.zeros((1, 2), dtype=bool), 0
         if outcome:
             env.outcome, env.lander.active = np.array([outcome], dtype=np.intp), False
 

@@ -46,8 +46,7 @@ class Pad:
         return self.x + self.width / 2
 
 
-WIDE, NARROW, TINY = (6.0, 1), (4.4, 3), (3.6, 5)  # width in metres, factor; the feet span 2.1
-PADS: Final = (WIDE, NARROW, TINY)
+PADS: Final = ((6.0, 1), (4.4, 3), (3.6, 5))  # width in metres, factor; the feet span 2.1
 
 Hill = tuple[tuple[float, float], ...]  # its surface from left foot to right, convex from above
 Roof = tuple[tuple[float, float], ...]  # corners, counter-clockwise, of a convex rock with air under it

@@ -36,7 +36,7 @@ def judge(env: LanderEnv, flying: Bools) -> None:
 
 def _touch(env: LanderEnv, flying: Bools) -> Bools:
     """Read the step's contacts: which feet are down, how hard the touch was, and which flights it wrecked, (n,)."""
-    env.contacts = env.contacts & ~flying[:, None]
+    env.feet_down = env.feet_down & ~flying[:, None]
     touches = env.world.contacts
     if touches is None:
         return np.zeros(env.num_envs, dtype=bool)
@@ -45,7 +45,7 @@ def _touch(env: LanderEnv, flying: Bools) -> Bools:
     pad = shapes.max(axis=1) - 3  # the pad's number; the plain, hills and roofs come after the pads
     on_pad = pad < len(env.ground.pads)
     foot = (part > 0) & on_pad
-    env.contacts[world[foot], part[foot] - 1] = True
+    env.feet_down[world[foot], part[foot] - 1] = True
     env.touched[world[foot]] = pad[foot]
     felt = np.zeros((env.num_envs, 3))
     np.maximum.at(felt[:, 0], world, touches.approach[:, :2].max(axis=1))
@@ -71,7 +71,7 @@ def _touch(env: LanderEnv, flying: Bools) -> Bools:
 
 def _rest(env: LanderEnv, flying: Bools) -> Bools:
     """Count for how long each has stood still on both feet; whether that is long enough, (n,)."""
-    limits, calm = env.limits, flying & env.contacts.all(axis=1)
+    limits, calm = env.limits, flying & env.feet_down.all(axis=1)
     if not calm.any():
         env.still_steps *= ~flying
         return calm

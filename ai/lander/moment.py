@@ -71,7 +71,7 @@ class Moment:
             "air": np.broadcast_to(world.params.quadratic_drag, (count, len(world.bodies), 3)).copy(),
             "landers": {name: getattr(env, name).copy() for name in env.kept},
             "bodies": {name: value.copy() for name, value in _values(world.state).items()},
-            "contacts": {**memory, "gravity": felt},
+            "memory": {**memory, "gravity": felt},
             "landings": env.landings,
         }
         return cls(env.ground, state)
@@ -102,8 +102,8 @@ class Moment:
 
     def take(self, rows: Ints) -> Moment:
         """Return the moment of the landers `rows` (m,), each of them as often as it is named."""
-        state = {name: _taken(value, rows) for name, value in self.state.items() if name != "contacts"}
-        return Moment(self.ground, {**state, "contacts": memory_of_worlds(self.state["contacts"], rows)})
+        state = {name: _taken(value, rows) for name, value in self.state.items() if name != "memory"}
+        return Moment(self.ground, {**state, "memory": memory_of_worlds(self.state["memory"], rows)})
 
     def put(self, env: LanderEnv) -> None:
         """Put it into an environment of as many slots as it has landers, as `LanderEnv.restore` does."""
@@ -118,7 +118,7 @@ class Moment:
         _put_air(world, state["air"])
         for name, value in state["bodies"].items():
             setattr(world.state, name, value.copy())
-        world.recall(state["contacts"])
+        world.recall(state["memory"])
         env.strictness, env.landings = state["strictness"], state["landings"]
         env.begun = True
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -24,44 +23,24 @@ class Pilot(Protocol):
         """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now, for pilots that use them."""
 
 
-@dataclass(frozen=True)
-class Gains:
-    """Gains of the scripted controller, each one number or one for every slot (n,)."""
-
-    approach: Any = 0.35  # m/s towards the pad for every metre aside
-    lean: Any = 0.35  # rad for every m/s too much
-    turn: Any = 3.0  # wish to turn for every rad off
-    calm: Any = 2.2  # and against every rad/s of turning
-    touch: Any = 0.35  # m/s of falling at the pad
-    fall: Any = 0.33  # m/s more for every metre above
-    fastest: Any = 3.2  # m/s of falling, anywhere
-
-
-GAINS: Final = Gains()
-
-
 class ScriptedPilot:
     """Hand-written controller: it leans towards the pad, and falls no faster than it can brake.
 
     It senses what the network senses, and nothing more.
     """
 
-    def __init__(self, gains: Gains = GAINS) -> None:
-        self.gains = gains
-
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
         x, y, vx, vy, sin, cos, spin, *_ = (np.atleast_2d(observation)[:, :NUM_FEATURES] / OBSERVATION_SCALE).T
-        gains = self.gains
         angle = np.arctan2(sin, cos)
-        wanted_vx = np.clip(-gains.approach * x, -2.5, 2.5)
-        lean = np.clip(gains.lean * (vx - wanted_vx), -0.45, 0.45)
+        wanted_vx = np.clip(-0.35 * x, -2.5, 2.5)  # m/s towards the pad for every metre aside
+        lean = np.clip(0.35 * (vx - wanted_vx), -0.45, 0.45)  # rad for every m/s too much
         lean = np.where((y < 1.5) & (np.abs(x) < 2.0), np.clip(lean, -0.12, 0.12), lean)
-        turn = gains.turn * (lean - angle) - gains.calm * spin
+        turn = 3.0 * (lean - angle) - 2.2 * spin
         steer = np.where(turn > 0.25, 1, np.where(turn < -0.25, 2, 0))
         # Off to the side, keep height until the pad is near.
         height = y - np.clip(np.abs(x) - 1.6, 0.0, 6.0) * 0.6
-        wanted_vy = -np.clip(gains.touch + gains.fall * height, -0.6, gains.fastest)
+        wanted_vy = -np.clip(0.35 + 0.33 * height, -0.6, 3.2)  # falls faster the higher it is
         main = (vy < wanted_vy) & (np.abs(angle) < 1.0)
         at_rest = (y < 0.1) & (np.abs(x) < 2.0) & (np.abs(angle) < 0.15)
         action: Ints = np.where(at_rest, COAST, 3 * main + steer).astype(np.intp)
@@ -71,8 +50,7 @@ class ScriptedPilot:
 class LaggyPilot:
     """Repeats its last action with probability `chance`, else asks `pilot` (Reddy et al. 2018).
 
-    Every slot has a last action of its own, so `act` raises ValueError for another number of slots than before,
-    unless `forget` is called in between.
+    Every slot has a last action of its own; with another number of slots, all begin anew.
     """
 
     def __init__(self, pilot: Pilot, rng: np.random.Generator, chance: float = 0.8) -> None:
@@ -82,16 +60,10 @@ class LaggyPilot:
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9)."""
         fresh = self.pilot.act(observation, held=held)
-        if self._last is None:
+        if self._last is None or self._last.shape != fresh.shape:
             self._last = fresh
-        if self._last.shape != fresh.shape:
-            raise ValueError(f"the last actions are those of {self._last.size} slots, and here are {fresh.size}")
         self._last = np.where(self.rng.random(fresh.shape) < self.chance, self._last, fresh)
         return self._last
-
-    def forget(self) -> None:
-        """Begin new flights with no action to repeat."""
-        self._last = None
 
 
 class NoisyPilot:

@@ -45,7 +45,7 @@ NEAR: Final = 10.0  # metres within which an edge of the area is announced
 
 
 def sensed(
-    offset: Doubles, velocity: Doubles, sin: Doubles, cos: Doubles, spin: Doubles, contacts: Any, *, pads: int = 1
+    offset: Doubles, velocity: Doubles, sin: Doubles, cos: Doubles, spin: Doubles, feet_down: Any, *, pads: int = 1
 ) -> Floats:
     """Return the observations (n, 9) of n states over a ground with so many pads.
 
@@ -54,7 +54,7 @@ def sensed(
         velocity: m/s relative to the pad, (n, 2).
         sin, cos: of the angle, (n,).
         spin: rad/s, (n,).
-        contacts: whether the left and the right foot stand on the pad, (n, 2).
+        feet_down: whether the left and the right foot stand on the pad, (n, 2).
         pads: how many pads a lander may choose from.
 
     """
@@ -64,7 +64,7 @@ def sensed(
     numbers[:, 4] = sin
     numbers[:, 5] = cos
     numbers[:, 6] = spin
-    numbers[:, 7:9] = contacts
+    numbers[:, 7:9] = feet_down
     if pads > 1:
         numbers[:, 0].clip(-_FAR, _FAR, out=numbers[:, 0])
     numbers *= OBSERVATION_SCALE

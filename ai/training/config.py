@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.schedule import exploration, learning_rate, linear, target_rate
+from ai.agent.schedule import linear
 from ai.agent.storage import AGENT_FILE
 from ai.files import brief, shown
 from ai.files.knobs import knob
@@ -150,13 +150,3 @@ def presets_of(env: str) -> Mapping[str, Config]:
 def touchdown_limits(config: Config, decisions: int) -> float:
     """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
     return linear(1.0, config.final_touchdown_limits, decisions, config.schedule_decisions)
-
-
-def in_force(config: Config, decisions: int, episodes: int) -> dict[str, float]:
-    """Return the scheduled values in force after so many decisions and episodes, by the setting that acts."""
-    rate = "learning_rate" if decisions < config.schedule_decisions else "final_learning_rate"
-    return {
-        rate: learning_rate(config, decisions),
-        "tau": target_rate(config, decisions),
-        "epsilon_start": exploration(config, decisions, episodes),
-    }  # fmt: skip

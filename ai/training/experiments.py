@@ -1,8 +1,7 @@
 """Experiments: runs in which one thing differs greatly, beside a healthy twin of the same seed, and what came of them.
 
-A sabotage takes one part away from a configuration, so that a run shows what it is for. The effect depends on the
-configuration: the words that go with the sabotages were measured on one preset by `python -m benchmarks.sabotages`.
-Shares of training flights are of the last hundred, with their chance moves.
+A sabotage takes one part away from a configuration, so that a run shows what it is for. Shares of training flights are
+of the last hundred, with their chance moves.
 """
 
 from __future__ import annotations
@@ -27,7 +26,6 @@ _NEVER: Final = 0.3  # share below which it does not: near the pad, some land by
 _GRACE: Final = 2.0  # times as long as the twin took, after which it is judged
 _LATER: Final = 1.25  # times as long as the twin took, from which it came later
 _WORSE: Final = 0.15  # of a share that is worse than the twin's by more than chance
-MEASURED: Final = "modern"  # the preset
 _TERMINAL_ALONE: Final = {name: 0.0 for name in vars(RewardWeights()) if name != "terminal"}
 _SMALLEST_MEMORY: Final = 100
 _WITHOUT: Final = " without "  # in the name of a preset, before that of what is taken away
@@ -107,8 +105,3 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | 
         return "never"
     in_time = other.landed_after() <= _LATER * needed
     return "as_well" if in_time and other.landed() >= healthy.landed() - _WORSE else "later"
-
-
-def judged_at(healthy: Flown, other: Flown) -> float:
-    """Return the decisions from which an experiment is judged; infinite while its twin does not land."""
-    return _GRACE * healthy.landed_after() * other.config.num_envs

@@ -86,11 +86,9 @@ class LanderSession(Session[Training]):
 
     def _swarm_state_now(self) -> SwarmState:
         env, training = self.env, self.training
-        position, angle, earned = (
-            each.astype(np.float32) for each in (env.position, env.angle, training.statistics.earned)
-        )
+        position, angle = env.position.astype(np.float32), env.angle.astype(np.float32)
         actions, outcome = env.actions.astype(np.int8), env.outcome.astype(np.int8)
-        return SwarmState(position, angle, actions, outcome, earned, training.agent.decisions)
+        return SwarmState(position, angle, actions, outcome, training.agent.decisions)
 
     def _checkpoint(self, success: float) -> Checkpoint:
         agent = self.training.agent

@@ -39,7 +39,6 @@ class SwarmState:
     angle: NDArray[np.float32]  # (n,) radians
     action: NDArray[np.int8]  # (n,) as flown in this decision
     outcome: NDArray[np.int8]  # (n,) of ai.lander.environment.Outcome
-    earned: NDArray[np.float32]  # (n,) what the flight has earned so far
     decisions: int
 
 

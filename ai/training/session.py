@@ -170,12 +170,8 @@ class Session(ABC, Generic[R]):
         """Save the run, as it is now, to a folder."""
         self.messages.append(self.keeper.save(folder))
 
-    def _autosave_to(self, folder: Path) -> None:
-        """Save the run by itself to this folder from now on."""
-        self.keeper.move_to(folder)
-
     def _finish(self) -> None:
         """Take no more steps: keep the run, measure it, and end."""
         self._finished = True
 
-    commands: ClassVar[Commands] = {"change": change, "save": save, "autosave_to": _autosave_to, "finish": _finish}
+    commands: ClassVar[Commands] = {"change": change, "save": save, "finish": _finish}

@@ -50,11 +50,9 @@ class TasteSession(Session[Upbringing]):
 
     def _on_step(self, result: StepResult) -> None:
         env, training = self.training.env, self.training
-        position, angle, earned = (
-            each.astype(np.float32) for each in (env.position, env.angle, training.statistics.earned)
-        )
+        position, angle = env.position.astype(np.float32), env.angle.astype(np.float32)
         actions, outcome = env.actions.astype(np.int8), result.outcome.astype(np.int8)
-        self.messages.append(SwarmState(position, angle, actions, outcome, earned, training.agent.decisions))
+        self.messages.append(SwarmState(position, angle, actions, outcome, training.agent.decisions))
 
     def _choose(self, answers: int, answer: int) -> None:
         """Take the answer to the question after so many; one to another question is not meant."""

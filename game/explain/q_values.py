@@ -16,7 +16,7 @@ from game.core import texts
 from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
 from game.explain.figures import points
 
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
@@ -38,13 +38,11 @@ class QValues:
     Attributes:
         points: value of each action, in points of reward.
         flown: the action that is flown.
-        asked: the action that the pilot asked for; None without a pilot.
 
     """
 
     points: tuple[float, ...]
     flown: int
-    asked: int | None = None
 
     @classmethod
     def of(cls, decision: Decision) -> QValues | None:
@@ -109,8 +107,6 @@ def _draw_row(canvas: Canvas, values: QValues, action: int, place: tuple[float, 
     if loss > SPAN:  # it lies beyond the left end of the scale
         canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
         canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
-    if action == values.asked:
-        canvas.dot((x + values.fraction(loss) * track, y), 4, HUMAN)
     figure = texts.Q_BEST if loss == 0 else behind(loss)
     canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
 

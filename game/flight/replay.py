@@ -58,7 +58,7 @@ class FlightReplay:
     @property
     def touching(self) -> bool:
         """Whether the scout touches the ground, where a step takes several times as long as in the air."""
-        return bool(self._scout.env.contacts.any())
+        return bool(self._scout.env.feet_down.any())
 
     @property
     def complete(self) -> bool:

@@ -7,6 +7,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from ai.digits.training import DigitProgress
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
@@ -18,8 +20,8 @@ from ai.training.messages import NetworkState, Refused, RunStarted, Saved, Swarm
 from game.core import texts
 from game.core.shelf import Collection, LibraryError
 from game.core.worker import Worker, WorkerState
-from game.training.record import EarlierRun, Record, put_beside
-from game.training.run_settings import RunKind
+from game.training.record import Record
+from game.training.run_kind import RunKind
 
 # Decisions of each lander per second: slow, so that `modern` lands nine of ten after a minute, and as fast as possible.
 PACES: Final[tuple[float | None, ...]] = (3.5, None)
@@ -35,8 +37,6 @@ _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
     (Progress, DigitProgress, Checkpoint, Validation, SettingChange), "history"
 )
 _KEPT: Final = {SwarmState: "swarms", NetworkState: "networks"} | _ENTRIES
-# What an experiment has reported that takes the place of the run.
-_TAKEN: Final = "history", "config", "seed", "swarm_state", "network_state", "swarms", "networks"
 _BOTH: Final = ("change", "restore")  # commands that the experiment is asked for as well
 
 
@@ -50,10 +50,10 @@ class TrainingRun:
     machine what differs is what was changed. If one of them ends, the other goes on alone, and at full pace.
 
     Attributes:
-        runs: number of runs so far.
+        config, seed: of the run.
         swarm_state, network_state, lesson, confusion: the latest message of each kind.
         swarms, networks: those of the whole run, as far as they were kept.
-        earlier: the runs shown beside it, the latest first.
+        earlier: curves of the run before it, if it had any.
         begun: whether a run has reported its configuration since this was last set to False.
         keeps: whether a run is kept while it has no name.
         stopping: whether it was asked to end, and is being measured.
@@ -63,18 +63,17 @@ class TrainingRun:
 
     def __init__(self, kind: RunKind, collection: Collection[Any], *, keeps: bool = True) -> None:
         self.kind, self.collection, self.keeps = kind, collection, keeps
-        self.name, self.runs, self.pace = "", 0, len(PACES) - 1
+        self.pace = len(PACES) - 1
         self._worker: Worker | None = None
         self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
         self.config: Any = kind.of()
         self.seed, self.begun = 0, False
-        self.earlier: list[EarlierRun] = []
+        self.earlier: History | None = None
         self.twin: TrainingRun | None = None
         self.differing: tuple[str, ...] = ()
-        self._named = False  # whether the run was saved under its name
         self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
-        self._leaving: Worker | None = None  # of a healthy run whose place the experiment takes
+        self._notes: list[str] = []  # for the player
         self._limit: int | None = None
         self._clear()
 
@@ -127,65 +126,54 @@ class TrainingRun:
         return self.keeps and self.collection.left_behind and (self.collection.unsaved / STATE_FILE).exists()
 
     @property
-    def in_force(self) -> dict[str, float] | None:
-        """Values of the scheduled settings now; None before the run has said where it stands."""
-        return self.kind.in_force(self.config, self.history) if self.alive and len(self.history) else None
-
-    @property
     def turns(self) -> int:
         """Turns that a run of landers has taken."""
         return self.swarm_state.decisions // self.config.num_envs if self.swarm_state else 0
 
     # Beginning and end
 
-    def begin(self, config: Any, seed: int, resume: Path | None = None, name: str = "") -> str:
-        """Start a run, or resume a saved one, as soon as the previous one has ended, without an experiment beside it.
-
-        `name` is that of its settings. Returns a note, or ""; for a run that must wait, it comes from `poll`.
-        """
+    def begin(self, config: Any, seed: int, resume: Path | None = None) -> None:
+        """Start a run alone, or resume a saved one, as soon as the previous one has ended."""
         self.leave()
         again = (config, seed) == (self.config, self.seed) and not self.history.setting_changes
-        if resume is not None or not again:  # or else both curves would be the same
-            put_beside(self.earlier, self.name, self.history)
+        if (resume is not None or not again) and self._has_curves:  # or else both curves would be the same
+            self.earlier = self.history
+            self.earlier.checkpoints.clear()  # only its curves are shown
         self._clear()
-        self.config, self.seed, self.runs = config, seed, self.runs + 1
-        self._named = resume is not None and resume != self.collection.unsaved
-        self.name = resume.name if resume else ""
-        self.call(name)
+        self.config, self.seed = config, seed
         self._next = config, seed, resume
         self._orders.clear()
         if self._worker:
             self._worker.stop()
-        return self._start_waiting()
+        self._start_waiting()
 
-    def _start_waiting(self) -> str:
-        """Start the waiting run, if the previous process has ended; return a note."""
+    @property
+    def _has_curves(self) -> bool:
+        share = "success_rate" if "success_rate" in self.history.columns else "loss"
+        return bool(np.isfinite(self.history[share]).any())
+
+    def _start_waiting(self) -> None:
+        """Start the waiting run, if the previous process has ended."""
         if self._next is None or (self._worker and not self._worker.gone):
-            return ""
+            return
         begun, self._next = self._next, None
-        note = self._launch(*begun)
+        self._launch(*begun)
         while self._orders:
             self._order(self._orders.pop(0))
-        return note
 
-    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
-        keep, notes = self.collection.unsaved if self.keeps else None, self._name_ended()
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> None:
+        self._name_ended()
+        keep = self.collection.unsaved if self.keeps else None
         try:
             if resume is not None:
                 self.history = History.read(resume, self.kind.session.columns)
             if keep is not None and resume != keep:
                 self.collection.discard_rescued()
         except (ModelFormatError, LibraryError) as error:
-            notes.append(str(error))
+            self._notes.append(str(error))
         self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
-        return " ".join(notes)
-
-    def call(self, settings: str) -> None:
-        """Name the run after its settings, with a number, unless it was saved under a name."""
-        if not self._named:
-            self.name = texts.TRAIN_RUN.format(name=settings or texts.TRAIN_THIS, number=self.runs)
 
     def stop(self) -> None:
         """End the run, save its network and measure it. A second call ends it without that."""
@@ -199,36 +187,29 @@ class TrainingRun:
             self._worker.stop()
 
     def save(self, name: str) -> str:
-        """Name the run in the collection; return a note, which comes from `poll` for a run that goes on.
+        """Name the run in the collection; return why that failed, or "". That it is saved is a note of `poll`."""
+        try:
+            if self.alive and not self.waiting:
+                folder = self.collection.new_folder(name)
+                self._saving.append(folder)
+                self.ask("save", folder)
+            elif self.kept and not self.waiting:
+                self.collection.keep_rescued(name)
+                self._notes.append(texts.TRAIN_SAVED.format(name=name))
+            else:
+                return texts.TRAIN_NOTHING
+        except LibraryError as error:
+            return str(error)
+        return ""
 
-        Raises LibraryError if that fails.
-        """
-        if self.waiting:
-            raise LibraryError(texts.TRAIN_NOTHING)
-        if self.alive:
-            folder = self.collection.new_folder(name)
-            self._saving.append(folder)
-            self.ask("save", folder)
-            return ""
-        self.collection.keep_rescued(name)
-        return texts.TRAIN_SAVED.format(name=name)
-
-    def _name_ended(self) -> list[str]:
-        """Name a run that ended before it received its name; return notes for the player."""
-        notes = []
+    def _name_ended(self) -> None:
+        """Name a run that ended before it received its name."""
         while self._saving:
-            try:
-                notes.append(self.save(self._saving.pop().name))
-            except LibraryError as error:
-                notes.append(str(error))
-        return notes
+            self._notes.append(self.save(self._saving.pop().name))
 
     def close(self) -> None:
         """End the runs and their processes for certain."""
         self._next = None
-        if self._leaving is not None:
-            self._leaving.close(self.kind.grace)
-            self._take_place()
         if self.twin:
             self.twin.close()
         if self._worker:
@@ -241,22 +222,20 @@ class TrainingRun:
         messages = self._worker.poll() if self._worker else ()
         if self.waiting:  # from the previous run, only where it was saved
             messages = [message for message in messages if isinstance(message, Saved)]
-        notes = [self._hear(message) for message in messages]
+        for message in messages:
+            self._hear(message)
         if not self.alive:
             self.stopping = False
-            notes += self._name_ended()
-        notes.append(self._start_waiting())
+            self._name_ended()
+        self._start_waiting()
         if self.twin is not None:
-            notes += self.twin.poll()
-        if self._leaving is not None:
-            self._leaving.poll()
-            if self._leaving.gone:
-                self._take_place()
+            self._notes += self.twin.poll()
         self._keep_in_step()
-        return [note for note in notes if note]
+        notes, self._notes = [note for note in self._notes if note], []
+        return notes
 
-    def _hear(self, message: Any) -> str:
-        """Keep one message of the worker; return a note for the player, or ""."""
+    def _hear(self, message: Any) -> None:
+        """Keep one message of the worker."""
         if name := _LATEST.get(type(message)):
             setattr(self, name, message)
         if name := _KEPT.get(type(message)):
@@ -268,23 +247,21 @@ class TrainingRun:
             case RunStarted(config, seed, _, lost, steps):
                 self.config, self.seed, self.steps, self.begun = config, seed, steps or 0, True
                 self.history.reward_scale = getattr(config, "reward_scale", 1.0)
-                return str(lost)
+                self._notes.append(lost)
             case Saved():
-                return self._hear_saved(message)
+                self._hear_saved(message)
             case Refused(_, problem):
-                return str(problem)
-        return ""
+                self._notes.append(problem)
 
-    def _hear_saved(self, saved: Saved) -> str:
+    def _hear_saved(self, saved: Saved) -> None:
         if saved.folder in self._saving:
             self._saving.remove(saved.folder)
         if saved.problem:
-            return texts.TRAIN_NOT_SAVED.format(problem=saved.problem)
-        if saved.folder != self.collection.unsaved:
-            return texts.TRAIN_SAVED.format(name=saved.folder.name)
-        if saved.test is not None and not self.waiting:
+            self._notes.append(texts.TRAIN_NOT_SAVED.format(problem=saved.problem))
+        elif saved.folder != self.collection.unsaved:
+            self._notes.append(texts.TRAIN_SAVED.format(name=saved.folder.name))
+        elif saved.test is not None and not self.waiting:
             self.test, self.kept_epoch = saved.test, saved.epoch
-        return ""
 
     # Requests
 
@@ -320,15 +297,14 @@ class TrainingRun:
 
     # The experiment
 
-    def split(self, config: Any, seed: int, experiment: Any, differing: tuple[str, ...], name: str) -> str:
-        """Start a run, and an experiment beside it; return a note for the player, or ""."""
-        note = self.begin(config, seed, name=name)
+    def split(self, config: Any, seed: int, experiment: Any, differing: tuple[str, ...]) -> None:
+        """Start a run, and an experiment beside it."""
+        self.begin(config, seed)
         # It writes nothing to the disk: its twin has the place of the run without a name.
         self.twin, self.differing = TrainingRun(self.kind, self.collection, keeps=False), differing
         self.twin.pace = self.pace
         self.twin.begin(experiment, seed)
         self._keep_in_step()
-        return note
 
     def leave(self) -> None:
         """End the experiment; the run goes on."""
@@ -336,33 +312,6 @@ class TrainingRun:
             self.twin.close()
             self.twin, self.differing = None, ()
             self._keep_in_step()
-
-    def keep_twin(self) -> str:
-        """Go on with the experiment in place of the run, whose curves stay beside; return a note for the player, or "".
-
-        One that has ended cannot be kept, and nothing changes then.
-        """
-        twin = self.twin
-        if twin is None or not twin.alive or twin._worker is None or self._worker is None:
-            return texts.SPLIT_OVER
-        put_beside(self.earlier, self.name, self.history)
-        self._leaving, self._worker = self._worker, twin._worker
-        self._leaving.stop()
-        self.runs, self._named = self.runs + 1, False
-        for name in _TAKEN:
-            setattr(self, name, getattr(twin, name))
-        self.lesson, self.begun = None, True
-        twin._worker, self.twin, self.differing = None, None, ()
-        self._keep_in_step()
-        return ""
-
-    def _take_place(self) -> None:
-        """Let the experiment save itself in place of the run that has ended."""
-        self._leaving = None
-        if self.keeps:
-            with suppress(LibraryError):  # then it replaces what is there
-                self.collection.discard_rescued()
-            self.ask("autosave_to", self.collection.unsaved)
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""

@@ -36,8 +36,7 @@ class Chart:
     """Line chart in a box, in points.
 
     `read` formats a value; the x axis counts seconds from 0 on. `limits` fixes the vertical axis; otherwise it follows
-    the numbers, and a few that have exploded are cut off. On a `log` axis, values that are not positive are left out.
-    `empty` is the text while there is nothing to show.
+    the numbers, and a few that have exploded are cut off. `empty` is the text while there is nothing to show.
     """
 
     def __init__(
@@ -46,14 +45,12 @@ class Chart:
         *,
         limits: Limits | None = None,
         read: Callable[[float], str] = plotting.compact,
-        log: bool = False,
         empty: str,
     ) -> None:
         self.box = pygame.FRect(0, 0, 300, 100)
-        self.label, self.log, self._read, self._empty = label, log, read, empty
-        self._make_grid = plotting.decades if log else plotting.grid
+        self.label, self._read, self._empty = label, read, empty
         self._fixed = limits
-        self._lines = self._make_grid(*(limits or (0.0, 1.0)))
+        self._lines = plotting.grid(*(limits or (0.0, 1.0)))
         self.runs: list[Series] = []  # the current one first
         self._ticks: Sequence[Tick] = ()
         self.end = 1.0  # of the horizontal axis
@@ -90,10 +87,6 @@ class Chart:
         """Lowest and highest value of the vertical axis."""
         return self._fixed or (float(self._lines[0]), float(self._lines[-1]))
 
-    def _value(self, height: float) -> float:
-        """Return the value at a height of the vertical axis, which for a `log` axis is a logarithm."""
-        return 10.0**height if self.log else height
-
     # Data
 
     def set(self, runs: Sequence[Series], end: float, ticks: Sequence[Tick] = (), caption: str = "") -> None:
@@ -101,7 +94,7 @@ class Chart:
         self.runs, self.end, self._ticks, self.caption, self._sheet = list(runs), end, ticks, caption, None
         shown = plotting.robust_range(np.concatenate([run.y for run in runs])) if runs and not self._fixed else None
         if shown is not None:
-            self._lines = plotting.steady_grid(shown, self._lines, self._make_grid)
+            self._lines = plotting.steady_grid(shown, self._lines)
 
     def mark(self, x: float | None, caption: str = "") -> None:
         """Put the marker at x: a vertical line with a caption and a dot on the current run's curve; None removes it."""
@@ -156,7 +149,7 @@ class Chart:
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
         value = self.runs[0].last if self.runs else None
-        figure, colour = ("–", FAINT) if value is None else (self._read(self._value(value)), self.runs[0].colour)
+        figure, colour = ("–", FAINT) if value is None else (self._read(value), self.runs[0].colour)
         right = (box.right - _GUTTER, box.y + 13)
         taken = sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
         room = taken.left - _APART - box.x
@@ -168,11 +161,8 @@ class Chart:
             y = plot.bottom - (value - low) / (high - low) * plot.height
             sheet.line((plot.x, y), (plot.right, y), LINE)
             if number in (0, len(self._lines) - 1):
-                words = plotting.round_number(self._value(value))
+                words = plotting.round_number(value)
                 sheet.text(words, (plot.right + 6, y + 4), size=LABEL, colour=_AXES)
-        if self.log:
-            for word, y in zip(texts.CHART_LOG, (plot.centery - 2, plot.centery + 9), strict=True):
-                sheet.text(word, (plot.right + 6, y), size=LABEL, colour=_AXES, room=_GUTTER)
         ends: tuple[tuple[float, float, Align], ...] = ((0.0, plot.x, "left"), (self.end, plot.right, "right"))
         for seconds, x, align in ends:
             words, place = texts.CHART_SECONDS.format(seconds), (x, plot.bottom + 15)
@@ -200,7 +190,7 @@ class Chart:
         for run in self.runs if self.pointed else self.runs[:_DOTTED]:
             if point := run.nearest(x, _SLACK * self.end):
                 canvas.dot(self.place(*point), 3, run.colour)
-                rows.append(TooltipRow(run.name, self._read(self._value(point[1])), run.colour, run.dash))
+                rows.append(TooltipRow(run.name, self._read(point[1]), run.colour, run.dash))
         if self.pointed:
             # Below the label and the figure.
             below = (self.box.x, plot.top - 6, self.box.width, self.box.bottom - plot.top + 6)

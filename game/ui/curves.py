@@ -22,20 +22,8 @@ _SMOOTHING: Final = 0.022  # smoothing radius, as a share of the width
 _ROOM: Final = 0.15  # share of the vertical axis: values are clipped this far outside, so as not to distort the line
 _BLEED: Final = 3.0  # points that a line may reach out of the plot
 
-# Blue is the current run; the others differ from it and from each other in dashes, and in colour, for eyes of
-# every kind: neighbours in both, and no two of them are alike in both.
-_COLOURS: Final[tuple[Colour, ...]] = (
-    (236, 140, 190), (222, 214, 160), (144, 98, 244), (168, 182, 96), (204, 208, 220), (206, 118, 236)
-)  # fmt: skip
-_DASHES: Final[tuple[tuple[float, ...], ...]] = ((7.0, 5.0), (2.0, 4.0), (10.0, 4.0, 2.0, 4.0), (16.0, 5.0))
-
-
-def run_style(number: int) -> tuple[Colour, tuple[float, ...]]:
-    """Return colour and dashes of a run, 0 for the current one; beyond those there are, they begin again."""
-    if number == 0:
-        return NET, ()
-    turn, colour = divmod(number - 1, len(_COLOURS))
-    return _COLOURS[colour], _DASHES[(number - 1 + turn) % len(_DASHES)]
+# Blue is the current run; one beside it differs in colour and in dashes, for eyes of every kind.
+BESIDE: Final = ((236, 140, 190), (7.0, 5.0))
 
 
 class Series:
@@ -48,7 +36,6 @@ class Series:
         colour: of the line.
         dash: on, off, ... in points; empty for a solid line, which also shows its raw points.
         smooth: whether the line is smoothed; not for data without noise.
-        log: whether the heights are the values' logarithms to base 10, where they are positive.
 
     """
 
@@ -60,11 +47,8 @@ class Series:
         colour: Colour = NET,
         dash: tuple[float, ...] = (),
         smooth: bool = True,
-        log: bool = False,
     ) -> None:
         places, values = np.asarray(x, float), np.asarray(y, float)
-        if log:
-            values = np.log10(np.where(values > 0, values, np.nan))
         finite = np.isfinite(values)
         self.x: Numbers = places[finite]
         self.y: Numbers = values[finite]

@@ -128,6 +128,7 @@ class Form:
     def follow(self, before: Form) -> None:
         """Take the place of a form that was described otherwise: the focus stays on its key, or near its place."""
         self.manager.mouse_position = before.manager.mouse_position
+        self._held_steps, self._held_direction = before._held_steps, before._held_direction
         for widget in self.widgets:
             if same := before.find(widget.key):
                 widget.follow(same)

@@ -6,7 +6,7 @@ All arrays; no surfaces. Columns and rows are pixels of the plot, counted from i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -86,24 +86,9 @@ def grid(low: float, high: float) -> Numbers:
     return np.arange(first, last + 1) * step
 
 
-def decades(low: float, high: float) -> Numbers:
-    """Return the grid lines of a logarithmic axis, as logarithms: round numbers around low to high, tens between."""
-    low = min(max(low, -300.0), 299.0)
-    high = min(max(high, low + 1e-9), 300.0)
-    first = max(step for step in _round_logarithms(low) if step <= low + _ROUNDING)
-    last = min(step for step in _round_logarithms(high) if step >= high - _ROUNDING and step > first + _ROUNDING)
-    tens = np.arange(math.ceil(first + _ROUNDING), last - _ROUNDING)
-    return np.array([first, *tens, last])
-
-
-def _round_logarithms(near: float) -> Numbers:
-    """Return the logarithms of 1, 2, 5 and 10 times the power of ten below `near`, itself a logarithm."""
-    return math.floor(near + _ROUNDING) + np.log10((1.0, 2.0, 5.0, 10.0))
-
-
-def steady_grid(span: Limits, before: Numbers | None, make: Callable[[float, float], Numbers] = grid) -> Numbers:
+def steady_grid(span: Limits, before: Numbers | None) -> Numbers:
     """Return grid lines for a range; keep the previous ones while the range fits and fills them well."""
-    lines = make(*span)
+    lines = grid(*span)
     if before is None or span[0] < before[0] or span[1] > before[-1]:
         return lines
     return lines if lines[-1] - lines[0] < 0.6 * (before[-1] - before[0]) else before

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Final
 
 import pygame
@@ -15,8 +13,6 @@ from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.curves import run_style
-from game.ui.tooltip import draw_swatch
 from game.ui.widget import EASE, NOWHERE, OnPress, RowWidget, mix
 
 Words = str | Callable[[], str]  # a function for words that change
@@ -27,7 +23,6 @@ _FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
 _SHARE: Final = 0.4  # of a line, that a choice among others takes at most
-_SWATCH: Final = 27.0  # points for a piece of a line before a name
 
 
 def said(words: Words) -> str:
@@ -108,23 +103,6 @@ class ButtonRow(RowWidget):
         return max(self.measured(cursor) + beside, below) + _WORDS
 
 
-class RunRow(ButtonRow):
-    """Name of a run to press, after a piece of its line in a chart."""
-
-    def __init__(self, name: str, style: int, press: OnPress) -> None:
-        super().__init__(name, press, size=SMALL)
-        self.style = style
-        self.pad = 3.0
-
-    def write(self, cursor: Cursor) -> None:
-        if cursor.canvas:
-            middle = cursor.y + LEADING * self.size / 2
-            draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
-        name = replace(cursor, left=cursor.left + _SWATCH, width=cursor.width - _SWATCH)
-        super().write(name)
-        cursor.y = name.y
-
-
 class ToggleRow(RowWidget):
     """Switch at the right end, its label and an explanation on the left."""
 
@@ -163,12 +141,10 @@ class ToggleRow(RowWidget):
 
 
 class SliderRow(RowWidget):
-    """Slider: its label on the left or above, the figure at the right end, an explanation below.
-
-    `ticks` are values that have a name; it stops at them as well as after each `step`.
-    """
+    """Slider: its label on the left or above, the figure at the right end, an explanation below."""
 
     by_arrows = True
+    colour: Colour = NET
 
     def __init__(
         self,
@@ -180,35 +156,27 @@ class SliderRow(RowWidget):
         step: float,
         figure: Callable[[float], str],
         aside: str = "",
-        ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
         super().__init__(NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
-        self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
+        self._step, self._figure, self._aside = step, figure, aside
         self._track = (0.0, 1.0)
 
     @property
     def fraction(self) -> float:
-        return self._fraction_of(self.value)
-
-    def _fraction_of(self, value: float) -> float:
         low, high = self.limits
-        return min(max((value - low) / (high - low), 0.0), 1.0)
+        return min(max((self.value - low) / (high - low), 0.0), 1.0)
 
     def set(self, value: float) -> None:
-        """Set the value, clipped to the limits and rounded to a step or a tick."""
+        """Set the value, clipped to the limits and rounded to a step."""
         low, high = self.limits
-        stops = low + round((value - low) / self._step) * self._step, *self._ticks
-        value = min(max(min(stops, key=lambda stop: abs(stop - value)), low), high)
+        value = min(max(low + round((value - low) / self._step) * self._step, low), high)
         if value != self.value:
             self.value = value
             self._on_change(value)
 
     def shift(self, direction: int) -> bool:
-        low, value = self.limits[0], self.value
-        steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
-        stops = low + direction * steps * self._step, *self._ticks
-        self.set(min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value)))
+        self.set(self.value + direction * self._step)
         return True
 
     def advance(self) -> None:
@@ -232,31 +200,15 @@ class SliderRow(RowWidget):
             words.text(self.label)
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
-            canvas.bar((left, middle - 1, right - left, 2), self.fraction, NET)
-            for value in self._ticks:
-                x = left + self._fraction_of(value) * (right - left)
-                canvas.line((x, middle - 5), (x, middle + 5), MUTE)
+            canvas.bar((left, middle - 1, right - left, 2), self.fraction, self.colour)
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
-            canvas.text(self._figure(self.value), place, colour=NET, align="right", tabular=True)
+            canvas.text(self._figure(self.value), place, colour=self.colour, align="right", tabular=True)
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size
-        if self._ticks:
-            self._name_ticks(cursor.in_style(SMALL, MUTE), left, right)
-            cursor.gap(LEADING * SMALL)
         if self._aside:
             cursor.aside(self._aside)
-
-    def _name_ticks(self, cursor: Cursor, left: float, right: float) -> None:
-        """Write the name of each tick below it, or beside the one before."""
-        free = left
-        for value, name in self._ticks.items():
-            wide = cursor.measured(name)
-            free = max(free, left + self._fraction_of(value) * (right - left) - wide / 2)
-            if canvas := cursor.canvas:
-                canvas.text(name, (free, cursor.baseline), size=cursor.size, colour=cursor.colour)
-            free += wide + STEP
 
 
 class ChoiceRow(RowWidget):

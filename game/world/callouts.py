@@ -16,8 +16,6 @@ from game.flight.flight import Flight
 from game.flight.outcomes import crash_reason
 from game.world.camera import ClearArea, View
 
-_CONTACT: Final = (14, 80, 46)  # steps in which the word comes, stays and goes
-_REASON: Final = (6, 200, 20)
 _ABOVE: Final = 2.0  # metres from the middle of a craft to the words
 _EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
 _HEAD, _FOOT = 96.0, 120.0  # points that words keep from the upper edge, and from the lower one
@@ -30,69 +28,27 @@ _NEAR, _FAR = 2.2, 4.4  # metres from the craft within which a factor has gone, 
 _SHADE: Final = 0.62  # behind a factor, over paths and the dawn
 
 
-class Callouts:
-    """Callouts of one flight; call `follow` once after every step.
-
-    While `calm` (reduced motion), words appear at once.
-    """
-
-    def __init__(self, env: LanderEnv, reduced_motion: bool = False) -> None:
-        self._env, self.calm = env, reduced_motion
-        self.forget()
-
-    def forget(self) -> None:
-        """Start from the moment that is shown; events before it get no callout."""
-        self._was_down = bool(self._env.contacts[0].all())
-        self._was_over = bool(self._env.outcome[0] != Outcome.FLYING)
-        self._contact = self._crash = -1  # steps since; -1 for none
-
-    def follow(self) -> None:
-        """Note the contacts and the crash of the last step."""
-        env = self._env
-        crashed = bool(env.outcome[0] == Outcome.CRASHED)
-        self._contact += self._contact >= 0
-        self._crash += self._crash >= 0
-        down = bool(env.contacts[0].all()) and not crashed
-        began_down = env.steps[0] <= 2  # as a leg of a descent does, on its last pad
-        if down and not self._was_down and self._contact < 0 and not began_down:
-            self._contact = 0
-        if crashed and not self._was_over:
-            self._crash, self._contact = 0, -1
-        self._was_down, self._was_over = down, bool(env.outcome[0] != Outcome.FLYING)
-
-    def draw_words(self, canvas: Canvas, view: View, pose: Doubles) -> None:
-        """Write what has happened above the craft."""
-        shown = self._shown(self._contact, _CONTACT)
-        if shown > 0:
-            self._write(canvas, view, pose, texts.CONTACT_LIGHT, shown, crash=False)
-        shown = self._shown(self._crash, _REASON)
-        if shown > 0:
-            intact = bool(self._env.intact[0])
-            text = texts.BESIDE_TITLE if intact else crash_reason(self._env)
-            self._write(canvas, view, pose, text, shown, crash=not intact)
-
-    def _shown(self, since: int, times: tuple[int, int, int]) -> float:
-        """Opacity of a word, 0 to 1, `since` steps after it was due."""
-        come, stay, go = times
-        if not 0 <= since < come + stay + go:
-            return 0.0
-        if self.calm:
-            return 1.0
-        return min(1.0, (since + 1) / come, (come + stay + go - since) / go)
-
-    def _write(self, canvas: Canvas, view: View, pose: Doubles, text: str, shown: float, *, crash: bool) -> None:
-        x, y = view.point(float(pose[0]), float(pose[1]) + _ABOVE)
-        width = canvas.text_width(text, size=SMALL, weight="medium") + 22
-        seen = canvas.view
-        x = min(max(x, seen.left + _EDGE + width / 2), seen.right - _EDGE - width / 2)
-        y = min(max(y, seen.top + _HEAD), seen.bottom - _FOOT) - 6 * (1 - shown)
-        if crash:
-            canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8, shown)
-            canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn, shown)
-        else:
-            canvas.glow((x - width / 2 + 4, y - 4), 13, INK, 0.9 * shown)
-            canvas.dot((x - width / 2 + 4, y - 4), 3.5, INK, shown)
-        canvas.text(text, (x - width / 2 + 22, y), size=SMALL, weight="medium", colour=INK, alpha=shown)
+def draw_words(canvas: Canvas, view: View, env: LanderEnv, pose: Doubles) -> None:
+    """Write above the craft at a pose that both feet are down on a pad, or why it crashed."""
+    crashed, whole = env.outcome[0] == Outcome.CRASHED, bool(env.intact[0])
+    if crashed:
+        text = texts.BESIDE_TITLE if whole else crash_reason(env)
+    elif env.feet_down[0].all() and env.ground.ends[env.touched[0]]:
+        text = texts.CONTACT_LIGHT
+    else:
+        return
+    x, y = view.point(float(pose[0]), float(pose[1]) + _ABOVE)
+    width = canvas.text_width(text, size=SMALL, weight="medium") + 22
+    seen = canvas.view
+    x = min(max(x, seen.left + _EDGE + width / 2), seen.right - _EDGE - width / 2)
+    y = min(max(y, seen.top + _HEAD), seen.bottom - _FOOT)
+    if crashed and not whole:
+        canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8)
+        canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn)
+    else:
+        canvas.glow((x - width / 2 + 4, y - 4), 13, INK, 0.9)
+        canvas.dot((x - width / 2 + 4, y - 4), 3.5, INK)
+    canvas.text(text, (x - width / 2 + 22, y), size=SMALL, weight="medium", colour=INK)
 
 
 def draw_factors(canvas: Canvas, view: View, flight: Flight[Any], craft: Doubles, clear: ClearArea) -> None:

@@ -177,7 +177,7 @@ class PathPreview:
 
     @property
     def _arrived(self) -> bool:
-        return self._flight.over or bool(self._flight.env.contacts[0].any())
+        return self._flight.over or bool(self._flight.env.feet_down[0].any())
 
 
 def draw_futures(canvas: Canvas, view: View, futures: SixFutures, head: float) -> None:

@@ -12,7 +12,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
-from game.world.callouts import Callouts, draw_factors
+from game.world.callouts import draw_factors, draw_words
 from game.world.camera import WIDEST, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_edges, draw_ground
@@ -44,14 +44,13 @@ class Scenery:
         self._look = look_of(flight.recording.mission)
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
-        self._callouts = Callouts(flight.env, reduced_motion)
         self._camera = Camera()
         self.cut()
 
     def set_calm(self, calm: bool) -> None:
         """Set whether motion is reduced; that may change during a flight."""
         if calm != self.calm:
-            self.calm = self.stage.calm = self._callouts.calm = calm
+            self.calm = self.stage.calm = calm
             self._camera = Camera()
             self.cut()
 
@@ -82,7 +81,6 @@ class Scenery:
         """Show the flight at another moment, without the traces of the steps before."""
         flight = self._flight
         self.stage.forget()
-        self._callouts.forget()
         self.stage.thrust[0] = 0.0 if flight.over else flames(flight.env)[0]
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
         self.cut()
@@ -91,7 +89,6 @@ class Scenery:
         """Follow one step; `ended` is whether the flight ended with it. A `shot` replaces the flight's own."""
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
-        self._callouts.follow()
         if self.calm:
             self._keep_in_view()
             return
@@ -116,9 +113,7 @@ class Scenery:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
-        """Draw the factors of the pads over the paths, and the craft with its flames and dust.
-
-        `words` is whether to draw the callouts too.
+        """Draw the factors of the pads, and the craft with its flames, dust and, if asked for, `words` above it.
 
         Where a craft has left the area is a cross.
         """
@@ -131,7 +126,7 @@ class Scenery:
         self.stage.particles.draw(canvas.surface, view, alpha)
         shown = self.stage.pose_after(alpha)
         if words:
-            self._callouts.draw_words(canvas, view, pose if shown is None else shown)
+            draw_words(canvas, view, self._flight.env, pose if shown is None else shown)
 
 
 def mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:

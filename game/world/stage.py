@@ -103,7 +103,7 @@ class Stage:
         self.particles.clear()
         self.wind.forget()
         self._after = None
-        self._down, self._fall = self._env.contacts[0].copy(), 0.0
+        self._down, self._fall = self._env.feet_down[0].copy(), 0.0
 
     def pose_after(self, alpha: float) -> Doubles | None:
         """Return the pose (x, y, angle) of what still moves after the end; None where nothing does."""
@@ -155,7 +155,7 @@ class Stage:
 
     def _touch(self) -> None:
         """Raise dust for each foot that comes down, more for a harder touchdown."""
-        env, down = self._env, self._env.contacts[0]
+        env, down = self._env, self._env.feet_down[0]
         strength = min(1.0, max(0.0, self._fall) / env.limits.touch_speed)
         self._thud(np.flatnonzero(down & ~self._down).tolist(), strength)
         self._down, self._fall = down.copy(), -float(env.velocity[0, 1])

@@ -14,7 +14,7 @@ from ai.training.lander_session import CAREFUL
 from ai.training.messages import SwarmState
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import HUMAN, INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
+from game.drawing.tokens import HUMAN, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.lander import LANDER
@@ -26,7 +26,6 @@ _SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # (l
 _KEEP: Final = 16  # flights whose trail stays visible
 _LONGEST_GAP: Final = 20.0  # frames between two snapshots, up to which landers are interpolated
 _JUMP: Final = 4.0  # metres: farther than any lander flies between two snapshots
-_LABEL: Final = (3.2, 1.6)  # metres that a lander's label takes; of landers closer than that, only the best is labelled
 _REACH: Final = 16.0  # points from a lander within which a click is meant for it
 _MOON: Final = 5
 _SMALLEST: Final = 64  # pixels of its picture, each way
@@ -69,7 +68,6 @@ class LearningSwarm:
         self._now: Doubles = self._before
         self._since = self._gap = 1.0
         self._frame = 0
-        self._lucky = 0
 
     def take(self, swarm_state: SwarmState) -> None:
         """Take a new snapshot of the landers."""
@@ -90,9 +88,6 @@ class LearningSwarm:
         self._trails.follow(
             poses[:, :2], swarm_state.outcome.astype(np.intp), fresh, swarm_state.outcome != Outcome.FLYING
         )
-        flying = swarm_state.outcome == Outcome.FLYING
-        if fresh[self._lucky % len(fresh)] or not flying[self._lucky % len(flying)]:
-            self._lucky = int(np.where(flying, swarm_state.earned, -np.inf).argmax())
 
     def slot_at(self, point: Point) -> int | None:
         """Return the slot of the lander at a point of the view, or None without one."""
@@ -125,7 +120,7 @@ class LearningSwarm:
         count = len(poses)
         size = next((size for most, size in _SIZES if count <= most), _SIZES[-1][1])
         marked = np.zeros(count, bool)
-        marked[[CAREFUL, self._lucky % count]] = True
+        marked[CAREFUL] = True
         chosen = self.chosen if self.chosen is not None and self.chosen < count else None
         if chosen is not None:
             marked[chosen] = True
@@ -133,11 +128,6 @@ class LearningSwarm:
         shown = ~marked & ~wrecked
         draw_fires(canvas, view, poses[shown & self._burning()], self._frame, size)
         draw_crowd(canvas, view, poses[shown], size)
-        lucky = self._lucky % count
-        apart = np.abs(poses[lucky, :2] - poses[CAREFUL, :2])
-        luckiest = texts.SWARM_LUCKIEST if (apart > _LABEL).any() or wrecked[CAREFUL] else ""
-        if not wrecked[lucky] and lucky not in (CAREFUL, chosen):
-            self._draw_marked(canvas, view, poses[lucky], lucky, luckiest, INK, size)
         if not wrecked[CAREFUL] and chosen != CAREFUL:
             self._draw_marked(canvas, view, poses[CAREFUL], CAREFUL, texts.SWARM_BEST if count > 1 else "", NET, size)
         if chosen is not None:

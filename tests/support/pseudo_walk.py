@@ -41,7 +41,6 @@ from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.play.scene import PlayScene
 from game.shell.app import App
-from game.training.record import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.rows import ChoiceRow
@@ -68,11 +67,10 @@ def trained(driver: Driver) -> None:
 
 
 def rewound(driver: Driver) -> None:
-    """Train landers, with earlier runs beside them, and go back to the middle of the run."""
+    """Train landers, with an earlier run beside them, and go back to the middle of the run."""
     trained(driver)
     run, rewind = driver.top.run, driver.top.view.rewind
-    for _ in range(5):
-        put_beside(run.earlier, texts.TRAIN_NAME.format(preset=len(run.earlier)), run.history.copy())
+    run.earlier = run.history.copy()
     driver.frames(20)
     rewind.go_to(run.history["decisions"][-1] / 2)
     driver.frames(5)
@@ -85,12 +83,12 @@ def taught_to_read(driver: Driver) -> None:
 
 
 def knobs_listed(driver: Driver) -> None:
-    driver.top.knobs.open()
+    driver.top.show_all()
 
 
 def listed(driver: Driver) -> None:
     """Open the list of sabotages."""
-    driver.top.knobs.set_config(LANDERS, 3)
+    driver.top.knobs.ask(LANDERS)
     driver.top.view.laboratory.open()
     driver.frames(2)
 
@@ -111,7 +109,7 @@ def experimented(driver: Driver) -> None:
 
 
 def learn(driver: Driver, run: TrainingRun, config: object, enough: Callable[[], object]) -> None:
-    driver.top.knobs.set_config(config, 3)
+    driver.top.knobs.ask(config)
     driver.key(pygame.K_RETURN)
     driver.wait(enough)
     driver.key(pygame.K_RETURN)
@@ -220,7 +218,7 @@ STATES = [
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
     Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),
-    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 9)),
+    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 8)),
     Stop("modern inside", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))

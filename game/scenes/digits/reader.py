@@ -96,17 +96,14 @@ class LiveReading:
 
         Never raises. Returns False if no folder has one; a network loaded before then stays.
         """
-        from ai.nn import ModelFormatError
-
         self.problems.pop(name, None)
         for folder in folders:
             try:
                 self.classifiers[name] = classifier_in(folder)
-            except ModelFormatError as error:
-                self.problems.setdefault(name, brief(error.problem))
             except Exception as error:  # a damaged folder may fail in any way, and none may end the game
-                _log.exception("reading %s", folder)
-                self.problems.setdefault(name, brief(str(error) or type(error).__name__))
+                _log.info("reading %s", folder, exc_info=True)
+                problem = getattr(error, "problem", "") or str(error) or type(error).__name__
+                self.problems.setdefault(name, brief(problem))
             else:
                 return True
         return False

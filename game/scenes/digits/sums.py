@@ -10,15 +10,14 @@ import pygame
 
 from ai.explain.unit_sums import UnitSum
 from game.core import texts
-from game.digits.pictures import SIGNED, Numbers, picture
+from game.digits.pictures import SIGNED, Numbers, Picture
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
+from game.drawing.tokens import INK, LABEL, MUTE, NET
 from game.scenes.digits.unit_walk import UnitWalk
 from game.ui.panel import Column
 
-_HEIGHT: Final = 140.0  # of a matrix
-_LEAST: Final = 150.0
+_HEIGHT: Final = 176.0  # of a matrix
+_LEAST, _LARGEST = 150.0, 44.0  # of a column, and of a cell
 _MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
 _FULL: Final = 0.84  # of a cell's width for its figure: any wider, two of them would read as one
 _DIM: Final = 0.45  # of a cell's colour behind its figure
@@ -33,23 +32,26 @@ def figure(value: float, digits: int = 2) -> str:
 def describe_sum(column: Column, walk: UnitWalk) -> None:
     """Add the sum of the unit looked at, which may be another one of the same stage later."""
     unit = walk.unit
-    if walk.at_answer:
-        column.caption(texts.PATCH_SCORES)
-        scores, answer = walk.stages[-1].outputs.reshape(-1).tolist(), int(walk.probabilities.argmax())
-        for digit, (score, probability) in enumerate(zip(scores, walk.probabilities.tolist(), strict=True)):
-            column.pair(f"{digit}:  {figure(score)}", f"{100 * probability:.1f}%", NET if digit == answer else None)
-        column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
-    elif unit is None:
+    if unit is None:
         return
-    elif unit.weights is None:
-        pooling = walk.stage.kind == "pooling"
-        first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
-        _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0])
-        second.gap(24)
-        word = texts.PATCH_LARGEST.format(count=unit.patch[:, :, 0].size) if pooling else texts.PATCH_BENT
-        second.pair(word, lambda: figure(_unit(walk).output, 3), NET)
-    else:
+    if unit.weights is not None:
         _describe_products(column, walk)
+        return
+    first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
+    _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0])
+    second.gap(24)
+    pooling = walk.stage.kind == "pooling"
+    word = texts.PATCH_LARGEST.format(count=unit.patch[:, :, 0].size) if pooling else texts.PATCH_BENT
+    second.pair(word, lambda: figure(_unit(walk).output, 3), NET)
+
+
+def describe_answer(column: Column, walk: UnitWalk) -> None:
+    """Add the score and the probability of each digit."""
+    column.caption(texts.PATCH_SCORES)
+    scores, answer = walk.stages[-1].outputs.reshape(-1).tolist(), int(walk.probabilities.argmax())
+    for digit, (score, probability) in enumerate(zip(scores, walk.probabilities.tolist(), strict=True)):
+        column.pair(f"{digit}:  {figure(score)}", f"{100 * probability:.1f}%", NET if digit == answer else None)
+    column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
 
 
 def _unit(walk: UnitWalk) -> UnitSum:
@@ -84,38 +86,24 @@ def _describe_products(column: Column, walk: UnitWalk) -> None:
         second.pair(texts.PATCH_OTHERS.format(count=maps - 1), lambda: figure(others(), 3))
     second.pair(texts.PATCH_BIAS, lambda: figure(_unit(walk).bias, 3))
     second.line()
-    second.pair(texts.PATCH_TOTAL, lambda: figure(_unit(walk).total, 3), NET)
-    second.pair(texts.PATCH_GAVE, lambda: figure(_unit(walk).output, 3))
+    second.pair(texts.PATCH_TOTAL, lambda: figure(_unit(walk).output, 3), NET)
 
 
 def _add_matrix(column: Column, words: str, values: Callable[[], Numbers]) -> None:
-    painted = PaintCache()
+    """Add a picture of numbers, with figures where these are large enough to be read."""
+    shown = Picture(SIGNED)
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:
-        shown, room = values(), pygame.FRect((0, 0), box.size)
-        painted.draw(canvas, box, shown.tobytes(), lambda sheet: _paint_matrix(sheet, room, shown))
+        matrix = values()
+        largest, written = float(np.abs(matrix).max()), max(matrix.shape) <= _MOST_WRITTEN
+        cell = min(min(box.size) / max(matrix.shape), _LARGEST)
+        place = pygame.FRect(box.topleft, (cell * matrix.shape[1], cell * matrix.shape[0]))
+        shown.draw(canvas, place, matrix / max(largest, 1e-9) * (_DIM if written else 1.0))
+        size = LABEL * min(1.0, _FULL * cell / canvas.text_width(figure(-largest), size=LABEL, tabular=True))
+        for (row, across), value in np.ndenumerate(matrix) if written else ():
+            at = box.left + (across + 0.5) * cell, box.top + (row + 0.5) * cell + 0.36 * size
+            colour = INK if value else MUTE
+            canvas.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)
 
     column.caption(words)
     column.picture(_HEIGHT, draw)
-
-
-def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers) -> None:
-    """Draw numbers in their cells, or as a picture alone where they would be too small to read."""
-    rows, columns = values.shape
-    written = max(rows, columns) <= _MOST_WRITTEN
-    width, height = (box.width, box.height) if written else (min(box.size),) * 2
-    if written and columns < 3:
-        width, height = min(64.0 * columns, width), min(44.0 * rows, height)
-    area = sheet.rect(box.left, box.top, width, height)
-    largest = float(np.abs(values).max())
-    shown = values / max(largest, 1e-9) * (_DIM if written else 1.0)
-    sheet.surface.blit(picture(shown, area.size, SIGNED), area)
-    pygame.draw.rect(sheet.surface, LINE, area, 1)
-    if not written:
-        return
-    across, down = width / columns, height / rows
-    size = LABEL * min(1.0, _FULL * across / sheet.text_width(figure(-largest), size=LABEL, tabular=True))
-    for (row, column), value in np.ndenumerate(values):
-        at = box.left + (column + 0.5) * across, box.top + (row + 0.5) * down + 0.36 * size
-        colour = INK if value else MUTE
-        sheet.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)

@@ -15,7 +15,7 @@ from game.digits.pictures import GREY, SIGNED, Numbers, Picture
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN
 from game.scenes.digits.map_row import MapRow
-from game.scenes.digits.sums import describe_sum
+from game.scenes.digits.sums import describe_answer, describe_sum
 from game.scenes.digits.unit_walk import UnitWalk, sentence_of
 
 if TYPE_CHECKING:
@@ -57,14 +57,14 @@ class SumsTab:
 
     def describe(self, panel: Panel) -> None:
         walk = self.walk
-        names = [*(texts.PATCH_STAGES[stage.kind] for stage in walk.stages), texts.PATCH_STAGES["answer"]]
-        panel.choice("", names, walk.number, self.choose)
+        panel.choice("", [texts.PATCH_STAGES[stage.kind] for stage in walk.stages], walk.number, self.choose)
         panel.aside(sentence_of(walk))
         panel.gap()
         left, middle, right = panel.beside((30, 40, 36), least=_LEAST)
-        if not walk.at_answer:
-            self._describe_read(left)
-            self._describe_given(right)
+        self._describe_read(left)
+        self._describe_given(right)
+        if walk.at_answer:
+            describe_answer(right, walk)
         if walk.number:
             left.caption(texts.PATCH_PICTURES["digit"])
             left.picture(_SEEN, self._draw_digit)
@@ -89,8 +89,7 @@ class SumsTab:
         """Add a slider over all maps, or units, that the layer gave, and the map."""
         walk = self.walk
         maps: Numbers = np.moveaxis(_signed(walk.stage.outputs), 2, 0)
-        words = texts.PATCH_PICTURES["map" if maps[0].size > 1 else "units"]
-        figure = partial(_counted, words, len(maps))
+        figure = partial(_counted, len(maps))
         column.slider(texts.PATCH_GAVE, walk.place[2], (0, len(maps) - 1), self._turn_to, step=1, figure=figure)
 
         def lit() -> Box:
@@ -111,8 +110,8 @@ class SumsTab:
         canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
 
 
-def _counted(words: str, count: int, number: float) -> str:
-    return words.format(number=round(number) + 1, count=count)
+def _counted(count: int, number: float) -> str:
+    return texts.PATCH_PICTURES["units"].format(number=round(number) + 1, count=count)
 
 
 def _signed(values: Numbers) -> Numbers:

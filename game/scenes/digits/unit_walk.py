@@ -22,7 +22,7 @@ class UnitWalk:
         stages: the network's layers with what they read and gave.
         probabilities: (10,) the answer.
         logits: whether the answer is the softmax of what the last stage gave.
-        number: the stage looked at; `len(stages)` is the answer.
+        number: the stage looked at.
         places: the unit of each stage.
         channel: of the stage's input, the map in which the largest product is.
         unit: the sum of the unit looked at; None for a layer that is no sum.
@@ -35,30 +35,29 @@ class UnitWalk:
         self.probabilities = classifier.predict(image)[0]
         self.logits = classifier.network.cost.logits
         self.places: list[Place] = [(0, 0, 0)] * len(self.stages)
-        self.number = len(self.stages)
+        self.number = len(self.stages) - 1
         self.look_at(_loudest(self.stages[-1]))
         self.choose(0)
 
     @property
     def at_answer(self) -> bool:
-        """Whether the answer is looked at."""
-        return self.number == len(self.stages)
+        """Whether the last stage is looked at, whose outputs are the scores."""
+        return self.number == len(self.stages) - 1
 
     @property
     def stage(self) -> Stage:
-        """The stage looked at; at the answer, the last one."""
-        return self.stages[min(self.number, len(self.stages) - 1)]
+        """The stage looked at."""
+        return self.stages[self.number]
 
     @property
     def place(self) -> Place:
         """The unit looked at."""
-        return self.places[min(self.number, len(self.stages) - 1)]
+        return self.places[self.number]
 
     def look_at(self, place: Place) -> None:
         """Look at another unit of the stage, and link those before it anew."""
-        at = min(self.number, len(self.stages) - 1)
-        self.places[at] = place
-        for number in range(at, 0, -1):
+        self.places[self.number] = place
+        for number in range(self.number, 0, -1):
             stage, before = self.stages[number], self.stages[number - 1]
             known = stage.kind != "other"
             self.places[number - 1] = stage.strongest_input(self.places[number]) if known else _loudest(before)
@@ -86,8 +85,6 @@ def _loudest(stage: Stage) -> Place:
 
 def sentence_of(walk: UnitWalk) -> str:
     """Return what the stage looked at does, in a sentence."""
-    if walk.at_answer:
-        return texts.PATCH_SAYS["answer"]
     match walk.stage.layer:
         case ConvolutionLayer(kernel=kernel):
             return texts.PATCH_SAYS["deeper" if walk.number else "convolution"].format(size=kernel)

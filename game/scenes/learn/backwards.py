@@ -18,8 +18,8 @@ from game.digits.kept import classifier_in, mnist_test
 from game.digits.pictures import GREY, SIGNED, picture
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
-from game.explain.figures import decimal, percent
+from game.drawing.tokens import INK, LABEL, MUTE, NET, SMALL
+from game.explain.figures import percent
 from game.scenes.learn.chapter import Chapter
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -113,7 +113,7 @@ class Blame:
 class BackwardsChapter(Chapter):
     """The digit, the network's layers, and the blame on its way back through them."""
 
-    key, door, shape, explains = "backwards", Route("digits"), 0.42, True
+    key, door, shape = "backwards", Route("digits"), 0.42
     model: Blame
 
     def __init__(self, context: Context) -> None:
@@ -140,16 +140,6 @@ class BackwardsChapter(Chapter):
     def update(self) -> None:
         """Stand still: each step is a press."""
 
-    def unit(self, stage: int, unit: int) -> str:
-        """Return what a unit answered, and its share of the blame once that has come so far."""
-        answer = decimal(float(self.model.units[stage - 1][unit]), 2, "+")
-        name = texts.LEARN_BACKWARDS_UNITS[stage - 1].format(unit=unit + (stage < 3), answer=answer)
-        if self.model.reached < 4 - stage:
-            return name
-        blame = float(self.model.blames[stage][unit])
-        kind = "less" if blame > 0 else "more" if blame < 0 else "none"
-        return f"{name} {texts.LEARN_BACKWARDS_BLAME[kind].format(blame=decimal(blame, 3, '+'))}"
-
     def why(self) -> str:
         model = self.model
         return texts.LEARN_BACKWARDS_WHY.format(
@@ -171,12 +161,7 @@ class BackwardsChapter(Chapter):
             blamed = self.model.reached >= 4 - stage
             shows = (stage, blamed, self.model.steps, self.model.chosen)
             self._cache.draw(canvas, area, shows, partial(self._paint, stage, blamed, columns))
-            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=CAPTION, colour=MUTE)
-            for unit in range(columns * rows if stage else 0):
-                spot = _spot(box, stage, unit)
-                canvas.explain(spot, self.unit(stage, unit))
-                if canvas.pointer and spot.collidepoint(canvas.pointer):
-                    canvas.outline(spot, 2, HUMAN, 1.5)
+            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=LABEL, colour=MUTE)
         for digit in range(DIGITS):
             self._draw_answer(canvas, _spot(box, len(_BOXES), digit), digit)
 
@@ -196,7 +181,6 @@ class BackwardsChapter(Chapter):
         canvas.text(str(digit), (box.left + 6, y + 5), size=SMALL, colour=colour, weight="medium")
         canvas.bar((box.left + 24, y - 2, max(box.width - 100, 20), 4), odds, NET)
         canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
-        canvas.explain(box, self.unit(len(_BOXES), digit))
         if self.model.reached:
             size = 4 + 12 * abs(blame) / max(float(np.abs(self.model.blames[-1]).max()), 1e-9)
             tint = NET if blame < 0 else canvas.palette.warn

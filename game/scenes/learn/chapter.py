@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import pygame
 
@@ -17,20 +16,12 @@ from game.ui.context import Context
 from game.ui.panel import Column
 
 
-@dataclass(frozen=True)
-class Code:
-    """A function of ours whose line does what the chapter is about.
-
-    Attributes:
-        function: the function whose source is shown.
-        line: what the line is found by, which is lit.
-        note: what stands beside it: numbers of the case at hand.
-
-    """
+class Code(NamedTuple):
+    """A function of ours whose line does what the chapter is about."""
 
     function: Callable[..., Any]
-    line: Mark
-    note: str
+    line: Mark  # what the line is found by, which is lit
+    note: str  # what stands beside it: numbers of the case at hand
 
 
 class Model(Protocol):
@@ -50,7 +41,6 @@ class Chapter(ABC):
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
-        explains: whether its picture explains its parts, to whoever points at them or presses the key for it.
         model: what is touched.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         changed: set when it shows something else than before, or has other controls; the scene describes them anew.
@@ -60,7 +50,6 @@ class Chapter(ABC):
     key: ClassVar[str]
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
-    explains: ClassVar[bool] = False
     model: Model
 
     def __init__(self, context: Context) -> None:

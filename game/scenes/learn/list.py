@@ -13,7 +13,7 @@ from game.drawing.tokens import INK, MUTE, SMALL, TITLE
 from game.flight import networks
 from game.flight import own as own_pilots
 from game.flight.logbook import Records
-from game.scenes.learn.path import FIRST, PATH, Progress
+from game.scenes.learn.path import FIRST, PATH, is_done
 from game.training.library import Library
 from game.ui.actions import Table
 from game.ui.context import Context
@@ -38,17 +38,12 @@ class LearnScene(PanelScene):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._progress = Progress(context.settings)
-        self._choose_first()
-        self.build()
+        self.enter()
         self.form.focus(self.form.widgets[1])  # the list
 
-    def _choose_first(self) -> None:
-        """Choose the first chapter that is not done."""
-        self.chosen = next((key for key in PATH if not self._progress.done(key)), FIRST)
-
     def enter(self) -> None:
-        self._choose_first()
+        """Choose the first chapter that is not done."""
+        self.chosen = next((key for key in PATH if not is_done(self.context.settings, key)), FIRST)
         self.build()
 
     def actions(self) -> Table:
@@ -56,7 +51,8 @@ class LearnScene(PanelScene):
 
     def describe(self, panel: Panel) -> None:
         panel.title(texts.LEARN_TITLE)
-        panel.aside(texts.LEARN_LINE.format(done=sum(map(self._progress.done, PATH)), count=len(PATH)))
+        done = sum(is_done(self.context.settings, key) for key in PATH)
+        panel.aside(texts.LEARN_LINE.format(done=done, count=len(PATH)))
         panel.gap(8)
         panel.button(texts.ONE_FILE, partial(push, "one_file"), texts.ONE_FILE_ASIDE, colour=INK)
         panel.gap(8)
@@ -83,11 +79,11 @@ class LearnScene(PanelScene):
         column.caption(texts.LEARN_OWN_TITLE)
         for name, press in doors.items():
             done = self.own[name]
-            column.button(texts.LEARN_OWN[name], press, texts.LEARN_STATES[2] if done else "", size=SMALL + 1,
+            column.button(texts.LEARN_OWN[name], press, texts.LEARN_DONE if done else "", size=SMALL + 1,
                           colour=MUTE if done else INK)  # fmt: skip
 
     def _row(self, key: str) -> Row:
-        return texts.LEARN[key]["title"], texts.LEARN_STATES[self._progress.state(key)]
+        return texts.LEARN[key]["title"], texts.LEARN_DONE if is_done(self.context.settings, key) else ""
 
     def _choose(self, index: int) -> None:
         self.chosen = _KEYS[index]

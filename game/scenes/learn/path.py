@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
-
-from game.core import texts
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from game.core.settings import Settings
@@ -39,37 +37,7 @@ def following(key: str) -> str | None:
     return next(iter(keys[keys.index(key) + 1 :]), None)
 
 
-class Progress:
-    """What the player has done on the path. Damaged values in the settings count as nothing done.
-
-    The caller saves the settings after a change.
-    """
-
-    def __init__(self, settings: Settings) -> None:
-        self._settings = settings
-
-    def guess(self, key: str) -> int | None:
-        """Return the number of the answer that was given in a chapter; None before."""
-        guess, answers = self._of(key).get("guess"), list(filter(None, texts.LEARN_ANSWERS[key]))
-        return guess if type(guess) is int and 0 <= guess < len(answers) else None
-
-    def answer(self, key: str) -> str:
-        """Return the words of the answer that was given; empty before."""
-        guess = self.guess(key)
-        return "" if guess is None else str(texts.LEARN_ANSWERS[key][guess])
-
-    def state(self, key: str) -> int:
-        """Return 2 for a chapter that is done, 1 for one that was opened, else 0."""
-        return 2 if self._of(key).get("done") is True else int(isinstance(self._settings.learnt.get(key), dict))
-
-    def done(self, key: str) -> bool:
-        """Return whether a chapter's question was answered by a try."""
-        return self.state(key) == 2
-
-    def note(self, key: str, **values: int | bool) -> None:
-        """Note that a chapter was opened, and a `guess`, or that it is `done`."""
-        self._settings.learnt[key] = {**self._of(key), **values}
-
-    def _of(self, key: str) -> dict[str, Any]:
-        noted = self._settings.learnt.get(key)
-        return noted if isinstance(noted, dict) else {}
+def is_done(settings: Settings, key: str) -> bool:
+    """Return whether a chapter's question was answered by a try. Damaged values in the settings count as no."""
+    noted = settings.learnt.get(key)
+    return isinstance(noted, dict) and noted.get("done") is True

@@ -34,7 +34,6 @@ PAYS: Final = {
     "landing": RewardWeights(switch=-0.05),
     "aloft": RewardWeights(time=1.0, switch=-0.05),
     "haste": RewardWeights(time=-8.0, switch=-0.05, terminal=20.0),
-    "fuel": RewardWeights(time=0.0, switch=-0.05, engine=-4.0, terminal=30.0),
     "end": RewardWeights(distance=0.0, speed=0.0, alignment=0.0, tilt=0.0, feet=0.0, switch=-0.05),
 }
 ASKED: Final = "aloft"  # the pay that the question is about

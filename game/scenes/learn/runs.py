@@ -19,7 +19,7 @@ from game.core import texts
 from game.core.scene import Route
 from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, Colour
 from game.explain.figures import percent, points
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import HEAD, draw_axis, draw_curve, draw_landers
@@ -142,10 +142,17 @@ def draw_side_by_side(canvas: Canvas, box: pygame.FRect, flown: Flown | None, fl
 
 
 class DuelChapter(RunsChapter):
-    """Two agents; the right one is as the player chooses. A chart of one quantity stands below each."""
+    """Two agents; the right one is as the player chooses. A chart of one quantity stands below each.
+
+    Attributes:
+        quantity: the field of `SmallState` that the charts show.
+        ticks: its values beside them, in rising order; the last is at their top.
+
+    """
 
     shape = 0.6
-    quantity: ClassVar[str]  # the field of `SmallState` that its chart shows
+    quantity: ClassVar[str]
+    ticks: ClassVar[Sequence[float]]
 
     @abstractmethod
     def names(self) -> Sequence[str]:
@@ -156,12 +163,8 @@ class DuelChapter(RunsChapter):
         """Return what is written beside a run's chart."""
 
     @abstractmethod
-    def heights(self, values: Doubles) -> Doubles:
-        """Return where values stand on the chart, 0 to 1."""
-
-    @abstractmethod
-    def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the scale of a chart."""
+    def figure(self, value: float) -> str:
+        """Write a value of the quantity."""
 
     @property
     def landed(self) -> tuple[float, ...]:
@@ -180,9 +183,11 @@ class DuelChapter(RunsChapter):
             state = self.states[-1][run] if self.states else None
             draw_side_by_side(canvas, sky, state.flown if state else None, len(self.states))
             chart = pygame.FRect(left + 72, sky.bottom + 34, half - 72, box.bottom - sky.bottom - 44)
-            self.draw_scale(canvas, chart)
+            top = self.ticks[-1]
+            draw_axis(canvas, chart, [(tick / top, self.figure(tick)) for tick in self.ticks])
             if state:
-                draw_curve(canvas, chart, self.heights(self.history(run, self.quantity)), colour, self.LENGTH)
+                heights = np.clip(self.history(run, self.quantity) / top, 0.0, 1.0)
+                draw_curve(canvas, chart, heights, colour, self.LENGTH)
                 canvas.text(self.caption(state), (left, sky.bottom + 20), size=SMALL, tabular=True, room=half)
 
 
@@ -195,16 +200,13 @@ RIGHT: Final = (
 # No flight from any height below the ceiling can score more points than this: a landing is paid 120, and all else,
 # coming down, slowing down and both feet, at most 160.
 BOUND: Final = 300.0
-_TOP: Final = 10.0  # points of the scale of values that are linear; beyond, it is logarithmic
-_HIGHEST: Final = 1e7
-_TICKS: Final = ((0.0, "0"), (1e3, "1,000"), (1e5, "100,000"), (1e7, "10,000,000"))
 _MORE: Final = 0.2  # share of landings by which one agent is better than another
 
 
 class TargetChapter(DuelChapter):
     """A guess from a guess: the left agent has a target network, the right one asks the network that changes."""
 
-    key, quantity = "target", "value"
+    key, quantity, ticks = "target", "value", (0.0, BOUND, 1000.0)
 
     def configs(self) -> Sequence[Config]:
         return SMALL_RUN, RIGHT[self.choice]
@@ -224,25 +226,15 @@ class TargetChapter(DuelChapter):
             self.came = 2 if self.peaks[1] > BOUND else kept
 
     def why(self) -> str:
-        (usual, other), (least, peak) = map(percent, self.landed), map(_figure, self.peaks)
+        (usual, other), (least, peak) = map(percent, self.landed), map(self.figure, self.peaks)
         return texts.LEARN_TARGET_WHY.format(peak=peak, least=least, usual=usual, other=other)
 
     def caption(self, state: SmallState) -> str:
-        return texts.LEARN_TARGET_EXPECTS.format(points=_figure(state.value))
+        return texts.LEARN_TARGET_EXPECTS.format(points=self.figure(state.value))
 
-    def heights(self, values: Doubles) -> Doubles:
-        value, high = (np.log10(1 + np.maximum(each, 0.0) / _TOP) for each in (values, np.array(_HIGHEST)))
-        height: Doubles = np.minimum(value / high, 1.0)
-        return height
-
-    def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
-        draw_axis(canvas, box, [(float(self.heights(np.array(tick))), word) for tick, word in _TICKS])
-        y = box.bottom - box.height * float(self.heights(np.array(BOUND)))
-        canvas.line((box.left, y), (box.right, y), MUTE, 1.5)
-        said = texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}")
-        width = min(canvas.text_width(said, size=CAPTION), box.width)
-        canvas.fill(canvas.rect(box.right - width - 4, y - 18, width + 4, 16), NIGHT0)
-        canvas.text(said, (box.right, y - 6), size=CAPTION, colour=MUTE, align="right", room=box.width)
+    def figure(self, value: float) -> str:
+        """Write points without decimals, however many they are."""
+        return f"{round(value):+,}".replace("-", "−") if math.isfinite(value) and round(value) else points(value, 0)
 
 
 DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions: of the left agent, and of the right one to choose
@@ -254,7 +246,7 @@ _LEARNED: Final = 0.5  # share of flights that land, from which an agent has lea
 class DaringChapter(DuelChapter):
     """Daring: the left agent never takes a random action, the right one as often as chosen."""
 
-    key, quantity = "daring", "landed"
+    key, quantity, ticks = "daring", "landed", (0.0, 0.5, 1.0)
     PLAN = Plan(heights=(5.0, 8.0))
 
     def configs(self) -> Sequence[Config]:
@@ -282,13 +274,5 @@ class DaringChapter(DuelChapter):
         landed = texts.LEARN_RUNS_LANDED.format(share=percent(state.landed))
         return texts.LEARN_RUNS_FLIGHTS.format(count=min(state.flights, RECENT), landed=landed)
 
-    def heights(self, values: Doubles) -> Doubles:
-        return values
-
-    def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
-        draw_axis(canvas, box, [(share, percent(share)) for share in (0.0, 0.5, 1.0)])
-
-
-def _figure(value: float) -> str:
-    """Write points without decimals, however many they are."""
-    return f"{round(value):+,}".replace("-", "−") if math.isfinite(value) and round(value) else points(value, 0)
+    def figure(self, value: float) -> str:
+        return percent(value)

@@ -5,17 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-import pygame
-
 from game.core import texts
 from game.core.scene import Push, Replace, Route, Transition
 from game.core.source import source_of
-from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE, Colour
 from game.explain.code_listing import add_listing
-from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.learn.path import FIRST, PATH, Progress, chapter_type, following
+from game.scenes.learn.path import FIRST, PATH, chapter_type, following
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
@@ -34,6 +30,7 @@ class ChapterScene(PanelScene):
     Attributes:
         chapter: the chapter that is shown.
         begun: whether the thing to touch stands there, since a guess was given or passed over.
+        guess: number of the answer that was given; None before, or without.
         finding: what the player's tries have shown; empty before.
         came: number of the answer that they have shown; None while they decide nothing.
         in_code: whether the line of code that did it stands in place of the picture.
@@ -42,13 +39,10 @@ class ChapterScene(PanelScene):
 
     def __init__(self, context: Context, key: str = FIRST) -> None:
         super().__init__(context)
-        self._progress, self.explained = Progress(context.settings), Explained()
         self.key, self.chapter = key, chapter_type(key)(context)
-        # One that is done asks for a guess again.
-        self.begun = self._progress.guess(key) is not None and not self._progress.done(key)
-        self.finding, self.in_code = "", False
+        self.begun, self.finding, self.in_code = False, "", False
+        self.guess: int | None = None
         self.came: int | None = None
-        self._progress.note(key)
         self.build()
 
     def enter(self) -> None:
@@ -56,14 +50,10 @@ class ChapterScene(PanelScene):
 
     def close(self) -> None:
         self.chapter.close()
-        self.context.apply_settings()
 
     def begin(self, guess: int | None = None) -> None:
         """Go on to the thing to touch, with the number of an answer or without."""
-        if guess is not None:
-            self._progress.note(self.key, guess=guess)
-        self.begun = True
-        self.context.apply_settings()
+        self.guess, self.begun = guess, True
         self.build()
         self.form.focus(self.form.widgets[0])
 
@@ -77,23 +67,15 @@ class ChapterScene(PanelScene):
         self.finding, came = self.chapter.why(), self.chapter.verdict()
         if came is not None:
             self.came = came
-            self._progress.note(self.key, done=True)
+            self.context.settings.learnt[self.key] = {"done": True}
             self.context.apply_settings()
 
     def actions(self) -> Table:
         onward = [Action(Command.NEXT, self._go_on, texts.LEARN_TO_CHAPTER)] if following(self.key) else []
-        return [
-            self.form.changes,
-            *onward,
-            *([self.explained.action()] if self.chapter.explains else []),
-            self.form.goes_back(texts.HINT_BACK),
-        ]
+        return [self.form.changes, *onward, self.form.goes_back(texts.HINT_BACK)]
 
     def _go_on(self) -> Transition:
         return Replace(Route("chapter", (following(self.key),)))
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
         chapter, before = self.chapter, self.came
@@ -104,7 +86,6 @@ class ChapterScene(PanelScene):
             self.reword()
             if self.came != before:
                 self.panel.scroll(self.panel.height)  # to what the verdict has brought
-        self.explained.update()
         return super().update()
 
     # Rows
@@ -141,9 +122,8 @@ class ChapterScene(PanelScene):
 
     def _describe_question(self, column: Column) -> None:
         column.text(self.chapter.words["predict"])
-        guess = self._progress.guess(self.key)
         for number, answer in enumerate(filter(None, texts.LEARN_ANSWERS[self.key])):
-            column.button(answer, partial(self.begin, number), colour=HUMAN if number == guess else _OPEN)
+            column.button(answer, partial(self.begin, number), colour=_OPEN)
         column.button(texts.LEARN_NO_GUESS, self.begin, size=SMALL + 1, colour=MUTE)
 
     def _describe_try(self, column: Column) -> None:
@@ -152,10 +132,10 @@ class ChapterScene(PanelScene):
         column.gap(6)
         self.chapter.controls(column)
         column.gap(6)
-        guess, came = self._progress.guess(self.key), self.came
+        guess, came = self.guess, self.came
         if guess is not None:
             column.caption(texts.LEARN_YOU_SAID)
-            column.text(self._progress.answer(self.key), colour=HUMAN)
+            column.text(texts.LEARN_ANSWERS[self.key][guess], colour=HUMAN)
         if came is not None:
             palette, right = self.context.reading().palette, came == guess
             column.caption(texts.LEARN_CAME[right])
@@ -179,7 +159,3 @@ class ChapterScene(PanelScene):
             return
         line = source.line_of(code.line)
         add_listing(column, _LISTING, lambda: (source, line, {line: code.note}))
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        super().draw(canvas, alpha)
-        self.explained.draw(canvas)

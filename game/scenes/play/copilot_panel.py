@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
-import numpy as np
 import pygame
 
 from ai.agent.decision import Decision
-from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import LINE, NET, SMALL
-from game.explain.landings import Landing, Landings, RecentLandings, draw_landings
+from game.explain.landings import draw_landings
 from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.explain.readouts import draw_share
 from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
-from game.flight.foresight import HELD, SixFutures
-from game.flight.networks import QPolicy, flew, word
-from game.scenes.play.words import changed_by
+from game.flight.foresight import SixFutures
+from game.flight.networks import flew, word
 from game.ui.listing import shortened
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ai.copilot.copilot import SharedDecision
 
 _SIZE: Final = (280.0, 366.0)
 _TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
@@ -37,50 +30,33 @@ _WHY: Final = _VALUES + int(HEIGHT) + 20
 
 
 class CopilotPanel:
-    """What the network thinks, for whoever asks: what it weighs, whose action is flown, and why.
+    """What the network thinks, for whoever asks: what each action is worth to it, or after which it still lands.
 
     Attributes:
         shown: whether there is something to explain.
-        values: what the decision that is flown weighs: where the network lands if a guardian has looked ahead, or if
-            the person flies alone, else the Q-values; None before the first.
+        values: the Q-values of the decision that is flown, while the network has the stick; else None.
+        lands: whether it lands after each action, as far as that is known.
         why: lines that say why it is flown.
 
     """
 
     def __init__(self) -> None:
         self.shown = False
-        self.values: QValues | Landings | None = None
+        self.values: QValues | None = None
+        self.lands: list[bool | None] = []
+        self.flown = 0
         self.why: Sequence[str] = ()
-        self._recent = RecentLandings()
-        self._seen: object = None
-
-    def forget(self) -> None:
-        """Say anew what is said, in another language."""
-        self._seen = None
 
     def follow(self, flight: Flight[Crew], futures: SixFutures | None = None) -> None:
-        """Update the panel after a step; `futures` are those of a flight that nobody shares."""
+        """Update the panel after a step."""
         if flight.over:
             return
-        alone = flight.chooser.hand is StickHolder.NETWORK and isinstance(flight.chooser.network, QPolicy)
-        decision = flight.choice.decision if alone or flight.chooser.shared else None
-        if decision is None and futures:
-            self.shown, self._seen = True, None
-            self.values = landings_of(futures, flight)
-            self.why = ()
-            return
-        self.shown = decision is not None
-        if decision is None or decision is self._seen:
-            return
-        self._seen = decision
-        if isinstance(decision, Decision):
-            self.values = QValues.of(decision)
-            self.why = decision_words(decision)
-        elif decision.held is not None:
-            self.values, self.why = self._recent.fill(Landings.of(decision)), (changed_by(decision),)
-        else:
-            self.values = shared_values(decision, int(flight.env.target[0]))
-            self.why = () if np.isfinite(self.values.points).all() else texts.VALUES_DAMAGED
+        decision, self.flown = flight.choice.decision, flight.choice.push.action
+        alone = flight.chooser.hand is StickHolder.NETWORK and isinstance(decision, Decision)
+        self.values = QValues.of(decision) if alone and isinstance(decision, Decision) else None
+        self.shown = self.values is not None or futures is not None
+        self.why = decision_words(decision) if self.values and isinstance(decision, Decision) else ()
+        self.lands = futures.lands if futures else self.lands
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         view, (width, height) = canvas.view, _SIZE
@@ -93,31 +69,19 @@ class CopilotPanel:
         box = self.box(canvas)
         left, top = box.left + _LEFT, box.top
         canvas.panel(box)
-        looks = isinstance(self.values, Landings)
-        title = canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH - 60)
+        title = canvas.text(
+            texts.DECISION_TITLE if self.values else texts.LANDINGS_TITLE, (left, top + 34), room=_WIDTH - 60
+        )
         room = left + _WIDTH - title.right - 12
         name = shortened(canvas, word(network), SMALL, room)
         canvas.text(name, (left + _WIDTH, top + 34), size=SMALL, colour=NET, align="right", room=room)
-        if isinstance(self.values, Landings):
-            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH, flew(network))
-        elif self.values is not None:
+        if self.values:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
+        else:
+            draw_landings(canvas, self.lands, self.flown, left, top + _VALUES, _WIDTH, flew(network))
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
         rows = Cursor(left, top + _WHY + 8, _WIDTH, canvas.scale, canvas)
         for line in self.why:
             rows.aside(line)
         if share is not None:
-            draw_share(canvas, left, top + _SIZE[1] - 30, _WIDTH, share, flew(network))
-
-
-def landings_of(futures: SixFutures, flight: Flight[Crew]) -> Landings:
-    """Return what comes of each action as a row of the panel."""
-    after = [Landing.UNKNOWN if lands is None else Landing.LANDS if lands else Landing.LOST for lands in futures.lands]
-    flown = flight.choice.push.action
-    return Landings(tuple(after), (flown, after[flown]), flown, HELD)
-
-
-def shared_values(decision: SharedDecision, pad: int) -> QValues:
-    """Return the Q-values of one lander's shared decision, for one of the pads as the goal."""
-    asked = int(decision.pilot[0])
-    return QValues(tuple(decision.points[0, pad].tolist()), int(decision.action[0]), None if asked == COAST else asked)
+            draw_share(canvas, left, box.bottom - 30, _WIDTH, share, flew(network))

@@ -120,7 +120,7 @@ class FlightPauseScene(PauseScene):
             panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
         elif not flown.credit.alone:
             choose = partial(push, "runs", choose=self._flight.choose_network)
-            panel.button(networks.pause_label(self._flight.network.name), choose)
+            panel.button(texts.PAUSE_NETWORK.format(name=networks.word(self._flight.network.name)), choose)
 
     def _write_about(self, cursor: Cursor) -> None:
         """Write which flight it is, and what is to be known of it."""

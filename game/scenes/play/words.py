@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.lander.sensing import near_edges
 from game.core import texts
-from game.explain.landings import Landing, Landings
 from game.flight import networks
 from game.flight.choosers import Crew
 from game.flight.credit import Credit
@@ -137,14 +136,22 @@ def dial_words(assist: float, problem: str = "") -> str:
 
 def changed_by(decision: SharedDecision) -> str:
     """Say in one sentence what a guardian has just changed; empty where it has changed nothing, or only waits."""
-    landings = Landings.of(decision)
-    action, after = landings.asked
+    from ai.copilot.futures import DECISION_STEPS
+    from ai.copilot.guardian import decisions_of
+    from ai.lander.push import KEYS
+    from engine import DT
+
+    assert decision.known is not None
+    known = decision.known[0]
     if not decision.overridden[0]:
-        return texts.GUARDIAN_LOST if landings.lost and Landing.UNKNOWN not in landings.after else ""
-    if after is Landing.UNKNOWN:
+        lost = all(key in known for key in KEYS) and not any(future.plan for future in known.values())
+        return texts.GUARDIAN_LOST if lost else ""
+    future, seconds = known.get(decision.asked[0]), decisions_of(decision.assist) * DECISION_STEPS * DT
+    if future is None:
         return ""
-    name, seconds = texts.said(ACTION_NAMES[action]), f"{landings.seconds:.1f}"
-    return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
+    after = "lost" if future.plan is None else "lands" if future.passes else "briefly"
+    name = texts.said(ACTION_NAMES[int(decision.pilot[0])])
+    return texts.GUARDIAN_SAVED[after].format(asked=name, seconds=f"{seconds:.1f}")
 
 
 def why_not_saved(flight: Flight[Crew]) -> str:

@@ -143,7 +143,7 @@ class PairRow(RowWidget):
 def _seen(flight: Flight, at: int) -> SwarmState:
     """Return a flight after so many decisions, as a swarm of one."""
     last = len(flight.actions)
-    pose, earned = flight.poses[None, at], np.zeros(1, np.float32)
+    pose = flight.poses[None, at]
     action = np.array([flight.actions[min(at, last - 1)]], np.int8)
     outcome = np.array([flight.outcome if at == last else Outcome.FLYING], np.int8)
-    return SwarmState(pose[:, :2], pose[:, 2], action, outcome, earned, at)
+    return SwarmState(pose[:, :2], pose[:, 2], action, outcome, at)

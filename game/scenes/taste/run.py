@@ -11,12 +11,12 @@ from ai.training.upbringing import UPBRINGING
 from game.core import texts
 from game.training.library import Library
 from game.training.run import TrainingRun
-from game.training.run_settings import RunKind
+from game.training.run_kind import RunKind
 
 PACE: Final = 45.0  # decisions a second: three times as fast as life
 _FOLDER: Final = ".taste"  # among the player's networks, until it has a name: Train has its own place
 
-RAISED: Final = RunKind(TasteSession, Config, {"taste": UPBRINGING}, lambda: texts.PRESETS, first=(), page=())
+RAISED: Final = RunKind(TasteSession, Config, {"taste": UPBRINGING}, lambda: texts.PRESETS, first=(), knobs={})
 
 
 class Nursery(Library):
@@ -38,13 +38,12 @@ class TasteRun(TrainingRun):
         super()._clear()
         self.asked = None
 
-    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
-        note = super()._launch(config, seed, resume)
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> None:
+        super()._launch(config, seed, resume)
         if self._worker:
             self._worker.set_pace(PACE)
-        return note
 
-    def _hear(self, message: Any) -> str:
+    def _hear(self, message: Any) -> None:
         if isinstance(message, Asked):
             self.asked = message
-        return super()._hear(message)
+        super()._hear(message)

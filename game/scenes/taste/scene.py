@@ -12,7 +12,6 @@ from ai.training.preferences import FIRST, NEITHER, SECOND, SUMS
 from ai.training.upbringing import UPBRINGING
 from game.core import texts
 from game.core.scene import Push, Transition, push
-from game.core.shelf import LibraryError
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
@@ -60,8 +59,7 @@ class TasteScene(PanelScene):
 
     def _begin(self, *, resume: bool = False) -> None:
         seed = int(self.context.rng.integers(_SEEDS))
-        if note := self.run.begin(UPBRINGING, seed, self.run.collection.unsaved if resume else None):
-            self.context.note(note)
+        self.run.begin(UPBRINGING, seed, self.run.collection.unsaved if resume else None)
         self.pair.ask(None)
         self.now.swarm.clear()
 
@@ -209,19 +207,11 @@ class TasteScene(PanelScene):
 
     def _keep(self) -> Transition:
         name = self.run.collection.free_name(texts.TASTE_NAME)
-        return Push(NameDialog(self, texts.NAMING, name, self._save_as))
-
-    def _save_as(self, name: str) -> str:
-        try:
-            if note := self.run.save(name):
-                self.context.note(note)
-        except LibraryError as error:
-            return str(error)
-        return ""
+        return Push(NameDialog(self, texts.NAMING, name, self.run.save))
 
     def _start_anew(self) -> None:
         """Bring up another; this one is put among the player's networks, if it has learned anything."""
-        problem = self._save_as(self.run.collection.free_name(texts.TASTE_NAME)) if self._answers else ""
+        problem = self.run.save(self.run.collection.free_name(texts.TASTE_NAME)) if self._answers else ""
         if problem:
             self.context.note(problem)
         else:

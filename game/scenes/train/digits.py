@@ -89,15 +89,11 @@ class DigitView(View):
         return Status(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)
 
     @property
-    def suggestion(self) -> str:
-        return texts.DIGIT_RUN_NAME.format(preset=self.scene.knobs.name)
-
-    @property
-    def unfinished(self) -> str:
+    def unfinished(self) -> str:  # type: ignore[override]
         return texts.TRAIN_LEFT if self.run.unfinished else ""
 
     @property
-    def worth_keeping(self) -> bool:
+    def worth_keeping(self) -> bool:  # type: ignore[override]
         return self.run.steps > 0 if self.run.alive else self.run.kept
 
     @property
@@ -113,7 +109,7 @@ class DigitView(View):
     # Rows
 
     @property
-    def key(self) -> Hashable:
+    def key(self) -> Hashable:  # type: ignore[override]
         return self._fallen is not None, self._shows_misread
 
     def describe_foot(self, column: Column) -> None:

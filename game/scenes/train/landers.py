@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -29,11 +29,9 @@ from game.scenes.train.rewind import Rewind
 from game.scenes.train.swarms import HEAD, Swarms
 from game.scenes.train.view import Pointer, View
 from game.training.library import Library
-from game.training.record import take_away
 from game.training.run_kind import LANDERS
 from game.ui.charts import Scrubber
 from game.ui.panel import Column
-from game.ui.rows import RunRow
 from game.ui.virtual_pointer import VirtualPointer
 
 if TYPE_CHECKING:
@@ -46,7 +44,8 @@ class LanderView(View):
     """View of a run of landers.
 
     Attributes:
-        swarms: what is seen of them.
+        left: the run that was left without a name by the last visit; None without one.
+        swarms: what is seen of the landers.
         laboratory: the experiment that was chosen, and what came of it.
         inside: the network.
         rewind: the moment that is shown.
@@ -58,14 +57,13 @@ class LanderView(View):
     def __init__(self, scene: TrainScene) -> None:
         super().__init__(scene)
         run = self.run
+        self.left = run.collection.rescued() if run.keeps else None
         self.rewind = Rewind(run)
-        self.laboratory = Laboratory(run, scene.knobs, self._split, self._leave_split)
+        self.laboratory = Laboratory(run, self._split)
         self.swarms = Swarms(run, self.rewind)
-        self.inside = Inside(run, partial(scene.opened, INSIDE))
+        self.inside = Inside(run, self.rewind)
         self.lessons = LessonDoor(run, self.context.note, self.context.rng)
-        self.advice = Advice(run, scene.knobs.turn)
-        self._advised: object = None  # the network on which there was advice last
-        scene.take_pace()
+        self.advice = Advice(run, scene.knobs)
 
     @staticmethod
     def collection(user_dir: Path) -> Library:
@@ -79,11 +77,23 @@ class LanderView(View):
 
     @property
     def fills(self) -> bool:  # type: ignore[override]
-        return self.inside.opened
+        return self.context.settings.is_open(INSIDE)
 
     @property
     def page(self) -> bool:  # type: ignore[override]
-        return self.inside.opened or bool(self.laboratory.page)
+        return self.fills or bool(self.laboratory.page)
+
+    @property
+    def titled(self) -> bool:  # type: ignore[override]
+        """Whether there is room for the title: over two swarms, it would lie on what says the same."""
+        return self.run.twin is None or self.swarms.box.height > 2 * HEAD
+
+    @property
+    def first(self) -> Sequence[str]:
+        """The few knobs; once its schedule is over, the last learning rate is the one that acts."""
+        run = self.run
+        over = run.alive and len(run.history) and run.history["decisions"][-1] >= run.config.schedule_decisions
+        return ("final_learning_rate", *self.kind.first[1:]) if over else self.kind.first
 
     def status(self) -> Status:
         run, row, title, landed = self.run, self.rewind.row, texts.TRAIN_TITLE, texts.TRAIN_LANDED
@@ -99,45 +109,44 @@ class LanderView(View):
         return Status(title, line, "" if np.isnan(share) else f"{share:.0f}", landed)
 
     @property
-    def beside(self) -> Beside:
-        chosen = self.laboratory.chosen
-        return self.swarms.beside(chosen.name if chosen else texts.LAB_HEADING)
+    def beside(self) -> Beside | None:
+        twin = self.run.twin
+        if twin is None:
+            return super().beside
+        otherwise = twin.config.reward_weights != self.run.config.reward_weights
+        return Beside(self.laboratory.name, twin.history, in_step=True, paid_otherwise=otherwise)
 
     def caption(self) -> str:
         name = caption(self.run.history) if self.run.alive else ""
         return texts.CHART_CAPTIONS[name] if name else ""
 
     @property
-    def suggestion(self) -> str:
-        return texts.TRAIN_NAME.format(preset=self.scene.knobs.name)
-
-    @property
-    def unfinished(self) -> str:
-        left = self.scene.left
-        if self.run.runs or left is None or not left.resumable:
+    def unfinished(self) -> str:  # type: ignore[override]
+        left = self.left
+        if self.run.state is not None or left is None or not left.resumable:
             return ""
         words = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
         return words.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
 
     @property
-    def worth_keeping(self) -> bool:
-        if self.run.runs:
-            return (self.run.alive or self.run.kept) and len(self.run.history) > 0
-        return self.scene.left is not None and bool(self.scene.left.success)  # it has landed
+    def worth_keeping(self) -> bool:  # type: ignore[override]
+        run = self.run
+        if run.state is None:
+            return self.left is not None and bool(self.left.success)  # it has landed
+        return (run.alive or run.kept) and len(run.history) > 0
 
     # Rows
 
     @property
-    def key(self) -> Hashable:
-        earlier = tuple((each.name, each.style) for each in self.run.earlier)
-        opened, now = self.inside.opened and len(self.run.history) > 0, self.moment is None
-        return self.laboratory.key, self.run.twin is None, now, self.advice.key, earlier, opened
+    def key(self) -> Hashable:  # type: ignore[override]
+        begun, hint = len(self.run.history) > 0, self.advice.shown
+        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun
 
     def describe_first(self, column: Column) -> None:
-        self.rewind.describe(column, timeline=self.inside.opened)
+        self.rewind.describe(column)
 
     def describe_page(self, column: Column) -> None:
-        if not self.inside.opened:
+        if not self.fills:
             self.laboratory.describe(column)
             return
         column.pair(texts.TRAIN_LANDED, lambda: self.scene.status.figure or "–")
@@ -162,34 +171,19 @@ class LanderView(View):
     def describe_foot(self, column: Column) -> None:
         column.choice("", texts.TRAIN_PACES, self.run.pace, self.scene.set_pace, SMALL)
 
-    def describe_last(self, column: Column) -> None:
-        """Add the names of the runs that are shown beside this one."""
-        shown = self.beside
-        if not shown.runs:
-            return
-        column.line()
-        for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
-            press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
-            column.widget(RunRow(name, style, press))
-        if not self.run.twin:
-            column.aside(texts.COMPARE_REMOVE)
-
     def describe_hint(self, column: Column) -> bool:
-        if self.advice.shown:
-            self.advice.describe(column)
-        return self.advice.shown
+        if hint := self.advice.shown:
+            self.advice.describe(column, hint)
+        return hint is not None
 
     def pointers(self) -> list[Pointer]:
         nowhere, charts = (0, 0, 1, 1), self.scene.charts
-        if self.inside.opened:
-            view = VirtualPointer(nowhere, self.inside.follow)
-            return [(view, lambda: self.inside.view.box)]
-        landers = VirtualPointer(nowhere, self.follow_unused, hold=texts.LESSON_MARK)
-        scrubber = Scrubber(charts, self._scrub, self._duel)
+        if self.fills:
+            return [(VirtualPointer(nowhere, self.inside.follow), lambda: self.inside.view.box)]
         return [
-            (landers, lambda: self.swarms.box),
+            (VirtualPointer(nowhere, self.follow_unused, hold=texts.LESSON_MARK), lambda: self.swarms.box),
             (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
-            (scrubber, lambda: charts.box),
+            (Scrubber(charts, self._scrub, self._duel), lambda: charts.box),
         ]
 
     def _scrub(self, place: float | int) -> None:
@@ -198,41 +192,35 @@ class LanderView(View):
         else:
             self.rewind.go_to(self.scene.charts.decisions_at(place))
 
-    # Time
+    # Events and time
 
     def follow(self, event: pygame.event.Event) -> None:
-        self.inside.follow(event)
+        if self.fills:
+            self.inside.follow(event)
 
     def follow_unused(self, event: pygame.event.Event) -> None:
         """Choose the lander that is clicked; a second click asks for its lesson."""
         swarm, pressed = self.swarms.shown, event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        slot = swarm.slot_at(event.pos) if pressed and not self.inside.opened else None
+        slot = swarm.slot_at(event.pos) if pressed and not self.fills else None
         if slot is not None and slot == swarm.chosen:
             self._ask_why()
         elif slot is not None:
             swarm.chosen = slot
 
     def update(self) -> Transition | None:
-        run = self.run
-        self.advice.silence(bool(self.scene.knobs.settings.waiting) or run.twin is not None)
-        if not run.alive:
-            self.advice.clear()
-        elif run.network_state is not self._advised and len(run.history):
-            self._advised = run.network_state
-            self.advice.follow()
-        self.rewind.update()
-        self.inside.show(run.network_state if self.moment is None else self.rewind.network_state, self.rewind.row)
-        self.inside.update()
+        self.advice.update()
+        if self.fills:
+            self.inside.update()
         self.swarms.update(self.context.settings.reduced_motion)
-        self.laboratory.update(self.scene.landed)
+        self.laboratory.update()
         lesson = self.lessons.answer()
         return push("lesson", lesson, self.lessons) if lesson else None
 
     def back(self) -> bool:
         if self.laboratory.page:
             self.laboratory.close()
-        elif self.inside.opened:
-            self.scene.open(INSIDE)
+        elif self.fills:
+            self.context.unfold(INSIDE)
         elif self.moment is not None:
             self.rewind.clear()
         else:
@@ -240,8 +228,9 @@ class LanderView(View):
         return True
 
     def clear(self) -> None:
-        for part in (self.swarms, self.rewind, self.advice, self.inside):
+        for part in (self.swarms, self.rewind, self.inside):
             part.clear()
+        self.advice.adviser.reset()
 
     # What can be done
 
@@ -273,47 +262,27 @@ class LanderView(View):
 
     # An experiment
 
-    def _split(self, sabotage: str) -> Transition | None:
-        """Fly a sabotage beside a healthy twin; a run without a name that goes on is asked about first."""
-        start = partial(self._split_now, sabotage)
-        if self.run.twin is None:
-            return self.scene.instead(start)
-        start()
-        return None
-
-    def _split_now(self, sabotage: str) -> None:
-        knobs = self.scene.knobs
-        config, seed, changed = knobs.config, knobs.seed, sabotaged(knobs.config, sabotage)
-        if note := self.run.split(config, seed, changed, tuple(differences(config, changed)), knobs.name):
-            self.context.note(note)
-        self.scene.cleared()
-        knobs.set_config(config, seed)
-        self.laboratory.begin()
-
-    def _leave_split(self, experiment: bool) -> None:
-        """End the split view; go on with the healthy run, or with the experiment."""
-        if not experiment:
-            self.run.leave()
-        elif note := self.run.keep_twin():
-            self.context.note(note)
-        self.scene.cleared()
-        self.laboratory.page = "result" if self.run.twin else ""
+    def _split(self, sabotage: str) -> None:
+        """Fly a sabotage beside a healthy twin; a run without a name that has learnt is kept first."""
+        knobs, run = self.scene.knobs, self.run
+        config = knobs.in_force
+        changed = sabotaged(config, sabotage)
+        if self.scene.keep():
+            run.split(config, run.seed, changed, tuple(differences(config, changed)))
+            knobs.ask(config)
+            self.scene.cleared()
 
     # The picture
 
     def place(self, place: Layout) -> None:
         self.swarms.place(place.swarm)
+        self._display = place.display
         self.inside.place(place.display)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the swarm, or both, or the network."""
-        if self.inside.opened:
-            canvas.fill(canvas.rect(*self.inside.display), NIGHT0)
+        if self.fills:
+            canvas.fill(canvas.rect(*self._display), NIGHT0)
             self.inside.draw(canvas)
         else:
-            self.swarms.draw(canvas, alpha, self.scene.landed)
-
-    @property
-    def titled(self) -> bool:  # type: ignore[override]
-        """Whether there is room for the title: over two swarms, it would lie on what says the same."""
-        return self.run.twin is None or self.swarms.box.height > 2 * HEAD
+            self.swarms.draw(canvas, alpha, self.scene.landed, self.laboratory.name)

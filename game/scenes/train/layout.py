@@ -13,14 +13,13 @@ from game.drawing.tokens import MUTE, SMALL, TITLE
 from game.explain.readouts import rate_colour
 from game.ui.hints import Hint, HintRow
 
-CAPTION: Final = 32.0  # points below a chart, for what is said of it
+LABEL: Final = 32.0  # points below a chart, for what is said of it
 _SIDE: Final = (320.0, 422.0)  # width of the panel at least and at most
 _WIDE: Final = 680.0  # points of a window from which the panel stands beside the display
 _BELOW: Final = 0.4  # share of a tall window for the panel
 _MARGIN: Final = 28.0
 _CHART: Final = (70.0, 172.0)  # height of a chart at least and at most
-_CHARTS: Final = (0.31, 0.5)  # share of the display for one row of charts, and for more
-_COLUMNS: Final = 2
+_CHARTS: Final = 0.31  # share of the display for the charts
 _TITLE: Final = (24.0, 16.0)  # corner of the title over the display
 _WIDEST: Final = 372.0
 _LOW: Final = 200.0  # points of the display above the charts, in which the title is its figure alone
@@ -33,7 +32,7 @@ class Layout(NamedTuple):
     Attributes:
         display: what is seen of the run.
         swarm: its upper part, above the charts.
-        charts: a box for each chart, with room for a caption below.
+        charts: a box for both charts, with room for a caption below.
         panel: beside or below the display.
 
     """
@@ -44,8 +43,8 @@ class Layout(NamedTuple):
     panel: pygame.FRect
 
 
-def layout(view: pygame.FRect, charts: int) -> Layout:
-    """Lay a window out in points, with so many charts."""
+def layout(view: pygame.FRect) -> Layout:
+    """Lay a window out in points."""
     display, panel = pygame.FRect(0, 0, *view.size), pygame.FRect(0, 0, *view.size)
     if view.width >= _WIDE and view.width > view.height:
         panel.width = min(max(0.33 * view.width, _SIDE[0]), _SIDE[1])
@@ -53,15 +52,9 @@ def layout(view: pygame.FRect, charts: int) -> Layout:
     else:
         display.height = panel.top = round((1 - _BELOW) * view.height)
         panel.height = view.height - display.height
-    rows = -(-charts // _COLUMNS)
-    share = _CHARTS[rows > 1] * display.height / rows
-    height = min(max(share - CAPTION, _CHART[0]), _CHART[1])
-    top = display.bottom - rows * (height + CAPTION) - 8
-    width = (display.width - 2 * _MARGIN - (_COLUMNS - 1) * _MARGIN) / _COLUMNS
-    boxes = tuple(
-        pygame.FRect(_MARGIN + column * (width + _MARGIN), top + row * (height + CAPTION), width, height)
-        for row, column in (divmod(number, _COLUMNS) for number in range(charts))
-    )
+    height = min(max(_CHARTS * display.height - LABEL, _CHART[0]), _CHART[1])
+    top, width = display.bottom - height - LABEL - 8, (display.width - 3 * _MARGIN) / 2
+    boxes = tuple(pygame.FRect(left, top, width, height) for left in (_MARGIN, 2 * _MARGIN + width))
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,21 +10,21 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Pop, Push, Transition
-from game.core.shelf import LibraryError
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, LINE, NIGHT0, PANEL, SMALL, TITLE
 from game.explain.explained import Explained
 from game.input.controls import Command
-from game.scenes.menus.dialogs import NameDialog, QuestionDialog
-from game.scenes.train.charts import FEW_CHARTS, TrainingCharts
-from game.scenes.train.knobs import KnobsPanel
+from game.scenes.menus.dialogs import NameDialog
+from game.scenes.train import knobs
+from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.landers import LanderView
 from game.scenes.train.layout import Layout, hint_row, is_low, layout
 from game.training.run import PACES, TrainingRun
 from game.training.run_settings import RunSettings
 from game.ui.actions import Action, Table
 from game.ui.context import Context
+from game.ui.curves import BESIDE
 from game.ui.form import FormScene
 from game.ui.hints import HintRow
 from game.ui.panel import Column, Panel
@@ -36,12 +36,10 @@ if TYPE_CHECKING:
     from game.ui.rows import ButtonRow
 
 _MARGIN: Final = 32.0  # of the panel
-_LEAST: Final = 80.0  # points of height for the title above the charts
 _FOOT: Final = 0.8  # share of the panel that its foot takes at most
 _LOW: Final = 220.0  # points of height, below which the foot scrolls with all else
 _LOOKS: Final = 10  # frames from one look at the run to the next
-MORE: Final = "more"  # what a player can open: the words for all else, and every chart
-CHARTS: Final = "charts"
+MORE: Final = "more"  # what a player can open: the words for all else
 
 
 class TrainScene(FormScene):
@@ -57,8 +55,7 @@ class TrainScene(FormScene):
 
     Attributes:
         run: the run, with the experiment beside it; the place of one without a name is locked until the scene is left.
-        left: the run that was left without a name by the last visit; None without one.
-        view, knobs, charts: what is seen of the run, the panel of knobs, and the curves.
+        view, knobs, charts: what is seen of the run, what its knobs ask for, and the curves.
         landed: percent of each run that succeeds, at the last look; None before there is a number.
         start_button: the button that starts, pauses and resumes.
 
@@ -70,7 +67,9 @@ class TrainScene(FormScene):
     def __init__(self, context: Context, view: type[View] = LanderView, resume: Path | None = None) -> None:
         super().__init__(context, self._back)
         self.run = run = TrainingRun(view.kind, view.collection(context.user_dir))
-        self._settings, self._was_running, self._frame, self._alive = context.settings, False, 0, False
+        self._settings, self._was_running, self._frame = context.settings, False, 0
+        run.pace = 0 if self._settings.slow_runs else len(PACES) - 1
+        self._all_knobs = False  # whether the page of knobs is shown
         self._page: Hashable = False
         self.panel = Panel(self.form)
         self._seen: Hashable = None
@@ -81,10 +80,8 @@ class TrainScene(FormScene):
             run.keeps = run.collection.hold()
             if not run.keeps:
                 context.note(texts.TRAIN_ELSEWHERE)
-            self.left = run.collection.rescued() if run.keeps else None
             self.charts = TrainingCharts(view.charts)
-            settings = RunSettings(view.kind.presets[view.preset], 0, partial(run.ask, "change"), self.begin, view.kind)
-            self.knobs = KnobsPanel(self.form, settings)
+            self.knobs = RunSettings(run, view.kind.presets[view.preset])
             self.view = view(self)
             self._look()
             self.build()
@@ -94,21 +91,11 @@ class TrainScene(FormScene):
             self.close()
             raise
         if resume:
-            self.start(self.knobs.config, 0, resume)
-
-    # What the player opens
-
-    def opened(self, name: str) -> bool:
-        """Whether a part is open."""
-        return self._settings.is_open(name)
-
-    def open(self, name: str) -> None:
-        """Open a part, or close it; it stays so for this player."""
-        self.context.unfold(name)
+            self.start(self.knobs.asked, 0, resume)
 
     def switch(self, column: Column, name: str, words: tuple[str, str], help_: str = "") -> None:
-        """Add the word that opens a part, or closes it."""
-        column.button(words[self.opened(name)], partial(self.open, name)).pad = 3.0
+        """Add the word that opens a part for this player, or closes it."""
+        column.button(words[self._settings.is_open(name)], partial(self.context.unfold, name)).pad = 3.0
         column.explain(help_)
 
     # Rows
@@ -122,7 +109,7 @@ class TrainScene(FormScene):
             self.form.focus(self.panel.widgets[0])
 
     def add_rows(self) -> None:
-        self.knobs.form, self._layout = self.form, None
+        self._layout = None
         self.panel = Panel(self.form, self.panel)
         self._foot = self.panel if self._low else Panel(self.form)
         self._pointed = self.view.pointers()
@@ -134,12 +121,12 @@ class TrainScene(FormScene):
     @property
     def _shown_page(self) -> Hashable:
         """Which page the panel shows."""
-        return self.view.page or self.knobs.page
+        return self.view.page or self._all_knobs
 
     @property
     def _room(self) -> pygame.FRect:
         """Room of the panel, with its foot."""
-        return layout(self.context.reading().view, 1).panel.inflate(-2 * _MARGIN, -2 * 20.0)
+        return layout(self.context.reading().view).panel.inflate(-2 * _MARGIN, -2 * 20.0)
 
     @property
     def _low(self) -> bool:
@@ -149,49 +136,54 @@ class TrainScene(FormScene):
     def state(self) -> Hashable:
         run = self.run
         return (
-            self._settings.opened, self.knobs.key, self.view.key, bool(run.problem), run.alive, run.stopping,
+            self._settings.opened, self._all_knobs, self.knobs.asked, self.knobs.problem, self.knobs.waits,
+            self.view.key, self.view.first, bool(self.view.beside), bool(run.problem), run.alive, run.stopping,
             bool(self.view.unfinished), self._low,
         )  # fmt: skip
 
     def _describe(self, column: Column) -> None:
         """Add the rows of the panel."""
-        view = self.view
+        view, settings = self.view, self.knobs
         view.describe_first(column)
         if view.page:
             view.describe_page(column)
-        elif self.knobs.page:
-            self.knobs.describe_page(column)
+        elif self._all_knobs:
+            knobs.describe_page(column, view.kind, settings, self.show_few)
         else:
-            self.knobs.describe(column)
+            knobs.describe_few(column, view.kind, settings, view.first)
+            if self.run.earlier and not self.run.twin:
+                column.text(texts.TRAIN_BESIDE, size=SMALL, colour=BESIDE[0])
             column.gap()
             self.switch(column, MORE, texts.MORE)
-            if self.opened(MORE):
-                self._describe_more(column)
-            view.describe_last(column)
+            if self._settings.is_open(MORE):
+                view.describe_more(column)
+                for word, press, name in (
+                    (texts.TRAIN_MORE_KNOBS, self.show_all, "knobs"),
+                    (texts.TRAIN_SAVE, self._save, "save"),
+                ):
+                    column.button(word, press).pad = 3.0
+                    column.explain(texts.TRAIN_HELP[name])
 
-    def _describe_more(self, column: Column) -> None:
-        helps = texts.TRAIN_HELP
-        self.view.describe_more(column)
-        if len(self.view.charts) > FEW_CHARTS:
-            self.switch(column, CHARTS, texts.TRAIN_MORE_CHARTS, helps["charts"])
-        for word, press, name in (
-            (texts.TRAIN_MORE_KNOBS, self.knobs.open, "knobs"),
-            (texts.TRAIN_SAVE, self._save, "save"),
-        ):
-            column.button(word, press).pad = 3.0
-            column.explain(helps[name])
+    def show_all(self) -> None:
+        """Show the page of knobs."""
+        self._all_knobs = True
+
+    def show_few(self) -> None:
+        """Show few knobs again."""
+        self._all_knobs = False
 
     def _describe_foot(self, column: Column) -> None:
-        """Add what went wrong, or a hint, or help; the run that can go on; and the words that start."""
-        if self.run.problem:
-            column.text(lambda: self.run.problem, size=SMALL, colour=HUMAN)
+        """Add what went wrong, or a hint, or what the knobs ask; the run that can go on; and the words that start."""
+        run, settings = self.run, self.knobs
+        if run.problem:
+            column.text(run.problem, size=SMALL, colour=HUMAN)
         elif not self.view.describe_hint(column):
-            self.knobs.describe_foot(column)
+            knobs.describe_answers(column, settings)
         if words := self.view.unfinished:
             column.button(texts.TRAIN_GO_ON, self._go_on_with_last, words, colour=HUMAN)
         column.gap()
-        anew = [(texts.TRAIN_ANEW, self.knobs.apply)] if self.knobs.settings.running and not self.run.stopping else []
-        undo = [(texts.KNOBS_UNDO, self.knobs.undo)] if self.knobs.asks else []
+        anew = [(texts.TRAIN_ANEW, self._begin)] if run.alive and not run.stopping else []
+        undo = [(texts.KNOBS_UNDO, settings.undo)] if settings.waits else []
         self.start_button, *others = column.words([(self._start_label, self._toggle), *anew, *undo], TITLE, INK)
         for each in (self.start_button, *others):
             each.pad = 2.0
@@ -200,11 +192,7 @@ class TrainScene(FormScene):
     def lay_out(self) -> None:
         """Lay everything out for the window as it is."""
         canvas = self.context.reading()
-        for more in (self.opened(CHARTS), False):
-            self.charts.show(more=more)
-            place = layout(canvas.view, len(self.charts.charts))
-            if place.swarm.height >= _LEAST:  # or else there is no room for every chart
-                break
+        place = layout(canvas.view)
         if place != self._layout:
             self._layout = place
             self.charts.place(place.charts)
@@ -271,31 +259,23 @@ class TrainScene(FormScene):
         return super().update() or outcome
 
     def _listen(self) -> None:
-        """Receive the worker's messages; show the run's settings once it tells them, and whether it goes on."""
+        """Receive the worker's messages; show the run's settings once it tells them."""
         run = self.run
         for note in run.poll():
             self.context.note(note)
-        if run.begun:
+        if run.begun:  # of one that goes on, its settings are known only now
             run.begun = False
-            self.knobs.set_config(run.config, run.seed)
-            run.call(self.knobs.name)  # of one that goes on, that is known only now
-        if run.alive != self._alive:
-            self._alive = run.alive
-            self.knobs.set_running(run.alive)
-        if in_force := run.in_force:
-            self.knobs.show_in_force(in_force)
+            self.knobs.ask(run.config)
         self.start_button.label = self._start_label
 
     def _look(self) -> None:
         """Look at the run: all that is said of it until the next look is read here, at once."""
-        history, view = self.run.history, self.view
-        beside = view.beside
-        urgent = view.moment, [(each.name, each.style) for each in beside.runs], self.run.state, self.charts.charts
+        view, beside = self.view, self.view.beside
+        urgent = view.moment, beside and beside.name, self.run.state
         if self._frame % _LOOKS and self._seen == urgent:
-            self.charts.go_on()
             return
         self._seen = urgent
-        self.charts.take(history, beside, view.caption(), view.moment)
+        self.charts.take(self.run.history, beside, view.caption(), view.moment)
         self.landed = self.charts.latest
         self.status = view.status()
 
@@ -317,39 +297,31 @@ class TrainScene(FormScene):
         elif run.alive:
             run.pause()
         else:
-            self.begin(self.knobs.config, self.knobs.seed)
+            self._begin()
 
-    def begin(self, config: Any, seed: int) -> None:
-        """Start a run; one that has learnt and has no name is put among the player's networks."""
-        if not self.view.worth_keeping or self._keep():
-            self.start(config, seed)
+    def _begin(self) -> None:
+        """Start a run; one that has learnt and has no name is kept."""
+        if self.keep():
+            self.start(self.knobs.asked, self.run.seed)
 
-    def _keep(self) -> bool:
-        """Put the run among the player's networks under a free name; False, and a note, if that failed."""
-        runs = self.run.collection
-        if problem := self._save_as(runs.free_name(self.view.suggestion if self.run.runs else runs.rescued_name)):
+    def keep(self) -> bool:
+        """Put a run that has learnt and has no name among the player's networks; False, and a note, if that failed."""
+        if not self.view.worth_keeping:
+            return True
+        if problem := self.run.save(self._free_name):
             self.context.note(problem)
         return not problem
 
-    def instead(self, start: Callable[[], None]) -> Transition | None:
-        """Start something in place of the run; ask first what becomes of one that has learnt and has no name."""
-        if not self.view.worth_keeping:
-            start()
-            return None
-        answers: list[tuple[str, Callable[[], None]]] = [
-            (texts.TRAIN_KEEP_FIRST, lambda: start() if self._keep() else None),
-            (texts.TRAIN_LET_GO, start),
-            (texts.TRAIN_STAY, lambda: None),
-        ]
-        return Push(QuestionDialog(self, texts.TRAIN_TAKES_PLACE, "", answers))
+    @property
+    def _free_name(self) -> str:
+        """A name for the run, after its settings; for one that was left, that of its kind."""
+        runs, (preset, _) = self.run.collection, self.view.kind.words()[self.knobs.preset]
+        return runs.free_name(runs.rescued_name if self.run.state is None else texts.TRAIN_NAME.format(preset=preset))
 
     def start(self, config: Any, seed: int, resume: Path | None = None) -> None:
         """Start a run, or go on with the saved one `resume`, whose first message brings its real settings."""
-        if note := self.run.begin(config, seed, resume=resume, name=self.knobs.name):
-            self.context.note(note)
+        self.run.begin(config, seed, resume)
         self.cleared()
-        if not resume:
-            self.knobs.set_config(config, seed)
 
     def cleared(self) -> None:
         """Show nothing of the runs before."""
@@ -357,23 +329,14 @@ class TrainScene(FormScene):
         self.view.clear()
 
     def _go_on_with_last(self) -> None:
-        self.start(self.knobs.config, self.knobs.seed, self.run.collection.unsaved)
+        self.start(self.knobs.asked, 0, self.run.collection.unsaved)
 
     def _save(self) -> Transition | None:
         """Ask for a name to save the run under."""
         if not (self.run.alive or self.run.kept):
             self.context.note(texts.TRAIN_NOTHING)
             return None
-        return Push(NameDialog(self, texts.NAMING, self.run.collection.free_name(self.view.suggestion), self._save_as))
-
-    def _save_as(self, name: str) -> str:
-        """Save the run under a name; return why that failed, or ""."""
-        try:
-            if note := self.run.save(name):
-                self.context.note(note)
-        except LibraryError as error:
-            return str(error)
-        return ""
+        return Push(NameDialog(self, texts.NAMING, self._free_name, self.run.save))
 
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES`, for later runs too."""
@@ -381,16 +344,12 @@ class TrainScene(FormScene):
         self._settings.slow_runs = index == 0
         self.context.apply_settings()
 
-    def take_pace(self) -> None:
-        """Go as the last run of the player went."""
-        self.run.set_pace(0 if self._settings.slow_runs else len(PACES) - 1)
-
     def _back(self) -> Transition | None:
         """Go back within the panel or the view; or leave, and if the run has learnt anything, say that it is kept."""
         if self.view.back():
             return None
-        if self.knobs.page:
-            self.knobs.close()
+        if self._all_knobs:
+            self.show_few()
             return None
         if self.run.keeps and self.run.alive and len(self.run.history):
             self.context.note(texts.TRAIN_KEPT)
@@ -402,6 +361,7 @@ class TrainScene(FormScene):
         """Draw what is seen of the run, and the panel beside it."""
         assert self._layout is not None
         display, box = self._layout.display, self._layout.swarm
+        canvas.fill(canvas.whole.surface.get_rect(), NIGHT0)  # below, a passing message takes a row
         self.view.draw(canvas, alpha)
         if not self.view.fills:
             canvas.fill(canvas.rect(display.left, box.bottom, display.width, display.bottom - box.bottom), NIGHT0)

@@ -72,7 +72,7 @@ def test_a_pad_moves_and_what_stands_on_it_is_carried_along_and_has_landed():
     env.limits = replace(env.limits, rest_steps=10**6)  # so that it stays to be seen
     fly(env, steps=300)
     assert env.outcome.tolist() == [Outcome.FLYING] * 3
-    assert env.contacts.all()
+    assert env.feet_down.all()
     assert env.position[:, 0] - env.pad[:, 0] == pytest.approx(0.4, abs=0.2)
     assert abs(env.pad_shift[0]) > 1.0
 

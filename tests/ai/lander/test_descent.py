@@ -53,7 +53,7 @@ def test_a_route_keeps_clear_of_all_rock_and_the_start_stands_free(subtests: pyt
             env = flown.begin(TANK)
             fly(env, steps=40)
             assert env.outcome[0] == Outcome.FLYING  # it stands, and standing where it began ends nothing
-            assert env.contacts.all()
+            assert env.feet_down.all()
 
 
 def test_a_landing_on_the_goal_or_a_flat_spot_ends_a_leg_and_one_at_the_start_does_not():

@@ -39,7 +39,7 @@ def test_standing_still_on_the_pad_for_half_a_second_is_a_landing():
     assert env.outcome[0] == Outcome.LANDED
     assert (result.terminated[0], result.truncated[0]) == (True, False)
     assert LIMITS.rest_steps <= env.steps[0] <= LIMITS.rest_steps + 10
-    assert env.contacts.all()
+    assert env.feet_down.all()
     assert env.altitude[0] == pytest.approx(0.0, abs=0.01)
 
 
@@ -52,7 +52,7 @@ def test_only_what_neither_moves_nor_leans_nor_turns_is_at_rest():
     fly(env, steps=LIMITS.rest_steps - 5)
     assert env.still_steps.all()
     fly(env, 3, steps=20)
-    assert not env.contacts.any()
+    assert not env.feet_down.any()
     assert not env.still_steps.any(), "it is counted anew after a hop"
 
 
@@ -120,7 +120,7 @@ def test_gliding_is_flying_until_something_touches_and_goes_through_it_after():
     for action in (0, 3, 4, 5, 2, *[0] * 20):
         actions = np.array([action, 0])
         seen = flown.step(actions).observation[0], glided.glide(actions)[0]
-        assert np.array_equal(*seen) or flown.contacts[0].any() or flown.outcome[0]
+        assert np.array_equal(*seen) or flown.feet_down[0].any() or flown.outcome[0]
     assert flown.outcome[1] == Outcome.CRASHED
     assert glided.outcome[1] == Outcome.FLYING
     assert glided.position[1, 1] < 0 < flown.position[1, 1]

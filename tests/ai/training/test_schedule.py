@@ -2,8 +2,8 @@
 
 import pytest
 
-from ai.agent.schedule import target_rate
-from ai.training.config import PRESETS, Config, in_force
+from ai.agent.schedule import exploration, learning_rate, target_rate
+from ai.training.config import PRESETS, Config
 from ai.training.lander_session import LanderSession
 
 TINY = Config(
@@ -13,29 +13,23 @@ TINY = Config(
 )  # fmt: skip
 
 
-def test_what_is_in_force_is_what_a_run_learns_and_flies_with():
+def test_once_its_schedule_is_over_a_run_learns_by_the_last_rate_and_a_turn_of_that_acts_at_once():
     run = LanderSession.live(TINY)
-    training = run.training
     for _ in range(81):
         next(run)
-    said = in_force(training.config, training.agent.decisions, training.episodes)
-    assert said["final_learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
-    assert said["epsilon_start"] == training.epsilon
-    assert "learning_rate" not in said
+    optimizer = run.training.agent.optimizer
+    assert optimizer.learning_rate == TINY.final_learning_rate
     run.send(("change", "final_learning_rate", 0.01))
-    said = in_force(training.config, training.agent.decisions, training.episodes)
-    assert said["final_learning_rate"] == 0.01, "at once, also while it rests"
     next(run)
-    assert training.agent.optimizer.learning_rate == 0.01
+    assert optimizer.learning_rate == 0.01
     run.close()
 
 
 def test_half_way_it_is_half_way():
-    said = in_force(PRESETS["modern"], 7_500, 0)
-    assert said["epsilon_start"] == pytest.approx(0.525)
-    said = in_force(PRESETS["modern"], 50_000, 0)
-    assert said["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)
-    assert said["tau"] == pytest.approx((0.005 + 0.00025) / 2)
+    modern = PRESETS["modern"]
+    assert exploration(modern, 7_500, 0) == pytest.approx(0.525)
+    assert learning_rate(modern, 50_000) == pytest.approx((3e-3 + 3e-4) / 2)
+    assert target_rate(modern, 50_000) == pytest.approx((0.005 + 0.00025) / 2)
 
 
 def test_without_a_last_share_the_target_s_rate_never_changes_by_a_bit():

@@ -6,7 +6,6 @@ from ai.lander.environment import Cause, Outcome
 from ai.lander.push import KEYS
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.explain.landings import Landing, Landings, RecentLandings
 from game.explain.readouts import FELT, Readout, at_touch, flight_readouts
 from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
@@ -49,14 +48,9 @@ class Damaged(Wavers):
         return np.full((len(observation), 6), np.nan, np.float32)
 
 
-@pytest.mark.parametrize("shares", [False, True])
-def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
-    shares: bool, monkeypatch: pytest.MonkeyPatch
-):
+def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(monkeypatch: pytest.MonkeyPatch):
     flight = begun(3, Damaged())
-    flight.chooser.help(0.5)
-    if not shares:
-        flight.chooser.hand_over()
+    flight.chooser.hand_over()
     copilot_panel = CopilotPanel()
     flight.step(KEYS[3])
     copilot_panel.follow(flight)
@@ -67,20 +61,6 @@ def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
     assert {row.figure for row in panel.rows} == {"–"}
     assert {row.fraction for row in panel.rows} == {0.0}
     assert set(texts.VALUES_DAMAGED) <= set(drawn.words)
-
-
-def test_rows_that_are_not_known_anew_stay_for_half_a_second():
-    unknown, recent = (Landing.UNKNOWN,) * 6, RecentLandings()
-    first = Landings((Landing.LOST, *unknown[1:]), (0, Landing.LOST), 3, 0.1)
-    assert recent.fill(first) == first
-    later = Landings((Landing.UNKNOWN, Landing.LANDS, *unknown[2:]), (1, Landing.LANDS), 1, 0.1)
-    assert recent.fill(later).after == (Landing.LOST, Landing.LANDS, *unknown[2:])
-    shown = [recent.fill(Landings(unknown, (2, Landing.UNKNOWN), 1, 0.1)).after[:2] for _ in range(8)]
-    assert shown[:7] == [(Landing.LOST, Landing.LANDS)] * 7
-    assert shown[7] == (Landing.UNKNOWN, Landing.LANDS)
-    assert recent.fill(first).after[0] is Landing.LOST
-    asked = Landings(unknown, (0, Landing.UNKNOWN), 1, 0.1)
-    assert recent.fill(asked).after[0] is Landing.UNKNOWN, "as the line below says that it was not flown ahead"
 
 
 # The reason of a crash names what was beyond its limit, and the read-outs mark the same.

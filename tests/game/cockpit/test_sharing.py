@@ -232,10 +232,10 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     assert len(shown.moments) == 1
     assert difference(RIGHT, MAIN) == "The network flies main, not right"
     assert difference(RIGHT, MAIN) in words
-    assert texts.DECISION_TITLE not in words  # the panel is for those who ask
+    assert texts.LANDINGS_TITLE not in words  # the panel is for those who ask
     driver.key(pygame.K_F1)
     driver.frames(4)
-    assert texts.DECISION_TITLE in words
+    assert texts.LANDINGS_TITLE in words
 
 
 def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_game: Open, context: Context, monkeypatch):

@@ -70,7 +70,6 @@ def test_the_unit_that_is_followed_leads_from_a_patch_to_the_answer(inside: Driv
     for number in range(1, len(walk.stages)):
         scene(inside).choose(number)
         assert walk.channel == walk.places[number - 1][2], "the map in which the last number stands"
-    scene(inside).choose(len(walk.stages))
     assert walk.at_answer
     assert walk.places == places, "looking on changes nothing of the way"
 
@@ -111,7 +110,7 @@ def test_the_mouse_moves_the_window_and_chooses_a_map(inside: Driver):
     assert walk.place == (8, 10, 9)
     inside.move(given.pixels((3, 4, 4, 5)).center)
     assert walk.place == (3, 4, 9)
-    inside.click(inside.choice(texts.PATCH_STAGES["answer"])._places[3].center)
+    inside.click(inside.choice(texts.PATCH_STAGES["pooling"])._places[3].center)
     assert walk.number == 3
 
 
@@ -152,7 +151,7 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
     save_settings(context)
     driver = opened(open_game, strange(kind), nine)
     walk = scene(driver).walk
-    for number in range(len(walk.stages) + 1):
+    for number in range(len(walk.stages)):
         scene(driver).choose(number)
         driver.frames(1)
         for picture in maps(driver):

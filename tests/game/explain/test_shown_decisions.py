@@ -10,7 +10,6 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision
 from ai.lander.environment import Outcome
-from ai.lander.push import KEYS
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.explain.q_values import SPAN
@@ -130,28 +129,3 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
         said = any("is kept" in word for word in drawn.words)
         assert said or points.max() - points[flight.recording.pushes[-1].action] < TINY
     assert flight.at > 200
-
-
-@pytest.mark.parametrize("pads", [1, 3])
-def test_the_co_pilots_panel_draws_the_shared_decision(
-    agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, pads: int
-):
-    flight, drawn = begun(5, agent, pads=pads), Drawn(monkeypatch)
-    copilot_panel = CopilotPanel()
-    flight.chooser.help(0.5)
-    rng = np.random.default_rng(1)
-    held = 0
-    while flight.at < 500:
-        if flight.at % 7 == 0:
-            held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
-        flight.step(KEYS[held])
-        copilot_panel.follow(flight)
-        if flight.over:
-            break
-        decision = flight.choice.decision
-        assert decision is not None
-        drawn.clear()
-        copilot_panel.draw(canvas, 0.5)
-        pad, flown = int(flight.env.target[0]), flight.recording.pushes[-1].action
-        points = agent.q_values(decision.observation[0, pad])[0] / agent.config.reward_scale
-        check(read_panel(drawn), points, flown)

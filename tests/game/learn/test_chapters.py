@@ -22,7 +22,6 @@ from game.core.assets import MODELS_DIR
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.explain.figures import decimal, percent
-from game.explain.tables import from_zero
 from game.flight.logbook import Records
 from game.scenes.learn import choice, downhill, pictures, plane
 from game.scenes.learn import runs as runs_module
@@ -205,10 +204,6 @@ def test_the_blame_is_that_of_the_real_backward_pass(made: Made):
     assert bias == pytest.approx(model.blames[3] * (1 - model.answers**2), abs=1e-5)
     assert not model.blames[0][image[0] == 0].any(), "a pixel without ink is not to blame"
     assert all(image[0, start] > 0 and slope != 0 for start, _, slope in model.links[0]), "nor is its connection"
-    silent = chapter.unit(1, 3)
-    for _ in range(3):
-        chapter.go_on()
-    assert f"{abs(float(model.blames[1][3])):.3f}" in chapter.unit(1, 3).removeprefix(silent)
 
 
 def test_a_step_makes_the_right_answer_likelier_and_moves_about_one_weight_in_five(made: Made):
@@ -326,21 +321,6 @@ def fly(chapter: ChoiceChapter) -> None:
     assert not chapter.model.running
 
 
-def test_bars_begin_at_0_and_keep_their_scale_when_a_result_arrives(made: Made):
-    chapter = made(ChoiceChapter)
-    before = [line.bars[0] for line in chapter._lines()]
-    assert [start for start, _ in before] == [0.0] * 6
-    for (_, end), value in zip(before, chapter.model.values.tolist(), strict=True):
-        assert end == pytest.approx(before[0][1] * value / chapter.model.values[0], rel=1e-5)
-    chapter.begin_with(chapter.model.worst)
-    fly(chapter)
-    lines = chapter._lines()
-    assert [line.bars[0] for line in lines] == before
-    assert [line.bars[1][1] > 0 for line in lines] == [action == chapter.model.worst for action in range(6)]
-    assert from_zero(-10.0, -50.0, 50.0) == (0.4, 0.5)
-    assert from_zero(0.0, -50.0, 50.0) == (0.5, 0.5)
-
-
 def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
     chapter = made(ChoiceChapter)
     for number in range(3):
@@ -353,14 +333,12 @@ def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
             # The chapter adds the pay of each physics step, the other that of each decision of four.
             assert chapter.model.results[action].points == pytest.approx(came, abs=0.5)
             assert chapter.model.results[action].landed == safely
+            assert [bool(line.cells[2]) for line in chapter._lines()].count(True) == len(chapter.model.results)
         if number < 2:
             chapter.turn()
     best, worst = chapter.model.results[chapter.model.best], chapter.model.results[chapter.model.worst]
     assert best.landed
-    assert (texts.LEARN_CHOICE_SURPRISE in chapter.why()) == (best.points < worst.points)
     assert chapter.verdict() == (0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2)
-    chapter.model.results[chapter.model.worst] = worst._replace(points=best.points + 1.0)
-    assert texts.LEARN_CHOICE_SURPRISE in chapter.why()
     assert chapter.tried
     chapter.turn()
     assert chapter.verdict() is None

@@ -10,7 +10,7 @@ from game.core import texts
 from game.core.settings import Settings
 from game.scenes.learn import scene as chapter_scene
 from game.scenes.learn.list import LearnScene
-from game.scenes.learn.path import PATH, Progress, following
+from game.scenes.learn.path import PATH, following, is_done
 from game.scenes.learn.scene import ChapterScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -29,43 +29,59 @@ def written(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> str:
     return " ".join(words)
 
 
-def test_the_list_leads_into_a_chapter_and_back(open_game: Open, context: Context):
-    save_settings(context)
+def done(driver: Driver, key: str) -> bool:
+    return is_done(driver.app.context.settings, key)
+
+
+def test_the_list_opens_on_the_first_chapter_that_is_not_done_and_leads_into_it(open_game: Open, context: Context):
+    # What was noted once is read, and what is damaged counts as not done.
+    noted = {KEYS[0]: {"guess": 1, "page": 3, "done": True}, KEYS[1]: {"done": True}, KEYS[2]: {"done": 1}, KEYS[3]: 3}
+    save_settings(context, learnt=noted)
     driver = open_game(LearnScene)
+    assert driver.top.chosen == KEYS[2]
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     driver.frames(20)
     assert isinstance(driver.top, ChapterScene)
-    assert (driver.top.key, driver.top.begun) == (KEYS[1], False)
+    assert (driver.top.key, driver.top.begun) == (KEYS[3], False)
     driver.key(pygame.K_RETURN)  # the first answer is in focus
-    assert driver.top.begun
-    assert driver.saved()["learnt"][KEYS[1]]["guess"] == 0
+    assert (driver.top.begun, driver.top.guess) == (True, 0)
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
     assert isinstance(driver.top, LearnScene)
-    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
-    driver.frames(20)
-    assert driver.top.begun
+    save_settings(context, learnt={key: {"done": True} for key in KEYS})
+    assert open_game(LearnScene).top.chosen == KEYS[0]
+    for learnt in ([], 7, "x"):
+        assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_a_chapter_grows_in_two_languages_and_leads_on(open_game: Open, context: Context, key: str, monkeypatch):
     save_settings(context)
     driver = open_game(ChapterScene, key)
-    scene = driver.top
+    scene, words, answers = driver.top, texts.LEARN[key], texts.LEARN_ANSWERS[key]
+    came: int | None = None
+    monkeypatch.setattr(type(scene.chapter), "why", lambda _: "shown")
+    monkeypatch.setattr(type(scene.chapter), "verdict", lambda _: came)
     assert not scene.panel.overflows
-    assert texts.LEARN[key]["task"] not in written(driver, monkeypatch)
+    assert words["task"] not in written(driver, monkeypatch)
     with driver.speaking("de"):
         assert texts.LEARN[key]["question"] in written(driver, monkeypatch)
-    driver.press_on(texts.LEARN_ANSWERS[key][1])
+    driver.press_on(answers[1])
     said = written(driver, monkeypatch)
     assert not re.findall(r"(?<![\w.])-\d", said), "a hyphen stands for a minus"
-    for words in (texts.LEARN_YOU_SAID, texts.LEARN_ANSWERS[key][1], texts.LEARN[key]["task"][:30]):
-        assert words in said
-    assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
-    monkeypatch.setattr(type(scene.chapter), "why", lambda _: "shown")
+    for part in (texts.LEARN_YOU_SAID, answers[1], words["task"][:30]):
+        assert part in said
     scene.chapter.found()
-    driver.frames(2)
-    driver.press_on(scene.chapter.words["door"])
+    said = written(driver, monkeypatch)
+    for part in (texts.LEARN_UNSETTLED, texts.LEARN_UNDECIDED[key][:20], "shown"):
+        assert part in said
+    assert not done(driver, key)
+    for came in (0, 1, None):
+        scene.chapter.found()
+        driver.frames(2)
+        assert done(driver, key), "a later try that answers nothing takes nothing back"
+        assert texts.LEARN_CAME[came != 0] in written(driver, monkeypatch)
+    driver.press_on(words["door"])
     driver.frames(2)
     assert driver.top_name not in ("ChapterScene", "ErrorScene")
     driver = open_game(ChapterScene, key)
@@ -78,27 +94,22 @@ def test_a_chapter_grows_in_two_languages_and_leads_on(open_game: Open, context:
 def test_a_chapter_is_done_once_a_try_has_answered_its_question(open_game: Open, context: Context, monkeypatch):
     save_settings(context)
     driver = open_game(ChapterScene, "neuron")
-    scene, progress, answers = driver.top, Progress(driver.app.context.settings), texts.LEARN_ANSWERS["neuron"]
+    scene, answers = driver.top, texts.LEARN_ANSWERS["neuron"]
     driver.press_on(answers[0])
     scene.chapter.model.set(0, -1.0)
     driver.skip(400)
     said = written(driver, monkeypatch)
     assert scene.finding in said, "a try that answers nothing is told, too"
     assert texts.LEARN_UNSETTLED in said
-    assert not progress.done("neuron")
     driver.press_on(texts.LEARN_NEURON_HINT)
     driver.skip(300)
     while scene.chapter.model.seconds < 10.1:
         driver.skip()
-    assert texts.LEARN_NEURON_FLIGHT["there"].format(seconds=10) in written(driver, monkeypatch), "said at once"
-    assert progress.done("neuron")
-    assert driver.saved()["learnt"]["neuron"]["done"] is True
     said = written(driver, monkeypatch)
-    for part in (texts.LEARN_YOU_SAID, answers[0], texts.LEARN_CAME[False], answers[2], scene.finding):
+    assert driver.saved()["learnt"]["neuron"]["done"] is True
+    there = texts.LEARN_NEURON_FLIGHT["there"].format(seconds=10)
+    for part in (there, texts.LEARN_YOU_SAID, answers[0], texts.LEARN_CAME[False], answers[2], scene.finding):
         assert part in said
-    progress.note("neuron", guess=2)
-    scene.build()
-    assert texts.LEARN_CAME[True] in written(driver, monkeypatch)
     driver.key(pygame.K_ESCAPE)
     assert not open_game(ChapterScene, "neuron").top.begun, "opened again, it asks for a guess again"
 
@@ -118,43 +129,6 @@ def test_the_line_that_did_it_is_shown_in_place_of_the_picture(open_game: Open, 
     assert texts.LESSON_NO_SOURCE in written(driver, monkeypatch)
 
 
-def test_the_list_opens_on_the_first_chapter_that_is_not_done(open_game: Open, context: Context):
-    done = {"done": True}
-    save_settings(context, learnt={KEYS[0]: done, KEYS[1]: done, KEYS[3]: done})
-    assert open_game(LearnScene).top.chosen == KEYS[2]
-    save_settings(context, learnt=dict.fromkeys(KEYS, done))
-    assert open_game(LearnScene).top.chosen == KEYS[0]
-
-
-def test_a_chapter_is_not_done_before_its_question_is_answered(open_game: Open, context: Context, monkeypatch):
-    save_settings(context)
-    for key in KEYS:
-        driver = open_game(ChapterScene, key)
-        scene, progress = driver.top, Progress(driver.app.context.settings)
-        with monkeypatch.context() as patch:
-            patch.setattr(type(scene.chapter), "why", lambda _: "shown")
-            patch.setattr(type(scene.chapter), "verdict", lambda _: None)
-            scene.begin()
-            scene.chapter.found()
-            driver.frames(2)
-            assert not progress.done(key)
-            assert texts.LEARN_UNSETTLED not in written(driver, monkeypatch), "nothing was said"
-            progress.note(key, guess=0)
-            scene.build()
-            said = written(driver, monkeypatch)
-            assert texts.LEARN_UNSETTLED in said
-            assert texts.LEARN_UNDECIDED[key][:20] in said
-            patch.setattr(type(scene.chapter), "verdict", lambda _: 1)
-            scene.chapter.found()
-            driver.frames(2)
-            assert progress.done(key)
-            patch.setattr(type(scene.chapter), "verdict", lambda _: None)
-            scene.chapter.found()
-            driver.frames(2)
-            assert progress.done(key), "a later try that answers nothing takes nothing back"
-        driver.app.close()
-
-
 def test_a_finding_comes_by_itself_and_leaving_ends_a_run(open_game: Open, context: Context, monkeypatch):
     save_settings(context)
     driver = open_game(ChapterScene, "choice")
@@ -163,7 +137,7 @@ def test_a_finding_comes_by_itself_and_leaving_ends_a_run(open_game: Open, conte
     for action in (scene.chapter.model.worst, scene.chapter.model.best):
         scene.chapter.begin_with(action)
         driver.skip(500)
-    assert Progress(driver.app.context.settings).done("choice")
+    assert done(driver, "choice")
     assert scene.chapter.why().split()[0] in written(driver, monkeypatch)
     driver = open_game(ChapterScene, "pay")
     scene = driver.top
@@ -184,37 +158,12 @@ def test_a_slider_that_is_held_is_not_taken_away(open_game: Open, context: Conte
     driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(slider.box.center), button=1)
     assert slider.held
     scene.chapter.found()
-    scene.chapter.changed = True
     driver.frames(5)
     assert slider in scene.form.widgets
     driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(slider.box.center), button=1)
     driver.frames(2)
     assert slider not in scene.form.widgets
     assert scene.finding
-
-
-def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):
-    damaged = {"neuron": 3, "plane": {"guess": "two", "done": 1}, "downhill": {"guess": -1}}
-    save_settings(context, learnt=damaged)
-    driver = open_game(LearnScene)
-    progress = Progress(driver.app.context.settings)
-    for key in ("neuron", "plane", "downhill"):
-        assert (progress.guess(key), progress.done(key)) == (None, False)
-        assert progress.answer(key) == ""
-    driver.frames(3)
-    driver.key(pygame.K_RETURN)
-    driver.frames(20)
-    assert isinstance(driver.top, ChapterScene)
-    driver.key(pygame.K_RETURN)
-    assert progress.guess("neuron") == 0
-    before = {"neuron": {"guess": 1, "page": 3, "done": True}, "plane": {"page": 2}}  # as it was noted once
-    progress = Progress(Settings.from_dict({"learnt": before}))
-    assert [progress.state(key) for key in ("neuron", "plane", "daring")] == [2, 1, 0]
-    assert progress.guess("neuron") == 1
-    beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
-    assert (beyond.guess("neuron"), beyond.answer("neuron")) == (None, ""), "it has three answers"
-    for learnt in ([], 7, "x"):
-        assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
 
 
 def test_controls_hold_still_and_the_way_on_stays_in_sight_while_a_page_grows(open_game: Open, context: Context):

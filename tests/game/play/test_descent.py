@@ -61,7 +61,7 @@ def test_a_landing_leads_to_the_next_leg_which_hangs_on_its_feet_with_what_is_in
     place = scene.flight.env.position.copy()
     game.frames(10)
     assert (scene.flight.env.position == place).all()
-    assert scene.flight.env.contacts.sum() == 0  # not a step has been flown
+    assert scene.flight.env.feet_down.sum() == 0  # not a step has been flown
     game.key(pygame.K_ESCAPE)
     assert "PauseScene" in game.top_name
 

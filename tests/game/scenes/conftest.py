@@ -33,8 +33,9 @@ def beside(open_game: Callable[..., Driver], small_run: tuple[Callable[[Context]
     scene, config = small_run
     driver = open_game(scene)
     driver.frames(2)
-    driver.top.open(MORE)
-    driver.top.knobs.set_config(config, 3)
+    driver.app.context.unfold(MORE)
+    driver.top.knobs.ask(config)
+    driver.top.run.seed = 3
     driver.frames(1)
     return driver
 

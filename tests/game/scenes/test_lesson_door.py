@@ -19,7 +19,7 @@ def start(driver: Driver) -> None:
 
 def place_of(driver: Driver, slot: int) -> tuple[float, float]:
     """Where a lander stands on the screen."""
-    swarm = driver.top.view.swarms.now
+    swarm = driver.top.view.swarms.shown
     x, y = next(
         (x, y) for y in range(0, 430, 4) for x in range(0, 830, 4) if swarm.slot_at((x, y)) == slot
     )  # fmt: skip
@@ -58,7 +58,7 @@ def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_al
     scene = train.top
     place = place_of(train, 2)
     train.click(place)
-    assert scene.view.swarms.now.chosen == 2
+    assert scene.view.swarms.shown.chosen == 2
     assert train.top is scene
     train.click(place)
     train.wait(lambda: isinstance(train.top, LessonScene))
@@ -72,7 +72,7 @@ def test_a_click_chooses_a_lander_and_another_opens_its_lesson_and_so_do_keys_al
     assert pointer.typing
     pointer.place.update(place)
     train.key(pygame.K_RETURN)
-    assert scene.view.swarms.now.chosen == 3
+    assert scene.view.swarms.shown.chosen == 3
     train.key(pygame.K_RETURN)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 3
@@ -86,7 +86,7 @@ def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
 
 
 def test_a_run_that_has_not_begun_to_learn_says_so(train: Driver) -> None:
-    train.top.knobs.set_config(LANDERS.changed(learning_starts=50_000, replay_size=60_000), 3)
+    train.top.knobs.ask(LANDERS.changed(learning_starts=50_000, replay_size=60_000))
     toggle(train)
     train.wait(lambda: train.top.run.swarm_state)
     train.press_on(texts.LESSON_WHY)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pygame
@@ -12,7 +11,7 @@ from ai.training.history import Checkpoint
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.landers import INSIDE
-from game.scenes.train.scene import CHARTS, TrainScene
+from game.scenes.train.scene import TrainScene
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -27,13 +26,8 @@ def train(train: Driver) -> Driver:
     """A run that has learnt for a while, and is paused."""
     learn(train, POINTS)
     pause(train)
-    train.top.open(CHARTS)
     train.frames(14)
     return train
-
-
-def timeline(driver: Driver) -> Any:
-    return driver.widget(texts.REWIND_TIMELINE)
 
 
 def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
@@ -48,13 +42,11 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     run, history = scene.run, scene.run.history
     assert scene.view.rewind.moment == moment
     # Everything is one of the messages of the run, the nearest that was kept.
-    assert scene.view.swarms.past.swarm_state is scene.view.rewind.swarm_state is run.swarms.nearest(moment)
+    assert scene.view.swarms.shown.swarm_state is scene.view.rewind.swarm_state is run.swarms.nearest(moment)
     assert scene.view.rewind.swarm_state.decisions == moment
     assert scene.view.rewind.network_state is run.networks.nearest(moment)
-    assert np.array_equal(scene.view.inside.network.values, scene.view.rewind.network_state.values)
     row = int(np.abs(history["decisions"] - moment).argmin())
     assert scene.view.rewind.row == row
-    assert scene.view.inside.paid == pytest.approx(history.parts[row])
     line = scene.status.line
     assert f"{moment:,}" in line
     seconds = float(np.interp(moment, history["decisions"], history["seconds"]))
@@ -63,7 +55,7 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
 
 def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver) -> None:
     scene = train.top
-    train.click(halfway(train, 3))
+    train.click(halfway(train, 1))
     train.frames(2)
     moment = scene.view.rewind.moment
     assert moment is not None
@@ -79,7 +71,7 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
 
 def test_a_drag_stays_with_its_chart_and_a_word_or_its_end_leads_to_now(train: Driver) -> None:
     scene = train.top
-    x, y = halfway(train, 2)
+    x, y = halfway(train, 1)
     train.move((x, y))
     train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
     first = scene.view.rewind.moment
@@ -97,47 +89,32 @@ def test_a_drag_stays_with_its_chart_and_a_word_or_its_end_leads_to_now(train: D
     assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
 
 
-@pytest.mark.parametrize("large", [False, True])
-def test_left_and_right_step_through_the_run_and_back_leads_to_now(train: Driver, large: bool) -> None:
-    """Beside the charts by keys, and beside the large network by a gamepad."""
-    scene, player = train.top, Player(train, "pad" if large else "keys")
-    if large:
-        train.press_on(texts.TRAIN_LOOK[0])
-        train.frames(1)
-    train.form.focus(timeline(train) if large else train.the(Scrubber))
+def test_left_and_right_step_through_the_run_and_back_leads_to_now_from_the_network_too(train: Driver) -> None:
+    scene, player = train.top, Player(train, "pad")
+    train.form.focus(train.the(Scrubber))
     moments = []
     for _ in range(4):
         player.press("left")
         moments.append(scene.view.rewind.moment)
     assert None not in moments
     assert sorted(set(moments), reverse=True) == moments
+    train.frames(1)
     assert_all_of_it_is_at(train, moments[-1])
     player.press("right")
     assert scene.view.rewind.moment == moments[-2]
-    if large:
-        player.press("back")
-        train.frames(1)
-        assert not scene.view.inside.opened
-        assert scene.view.rewind.moment == moments[-2]
+    train.app.context.unfold(INSIDE)
+    train.frames(2)
+    inside = scene.view.inside
+    assert np.array_equal(inside.network.values, scene.view.rewind.network_state.values)
+    player.press("back")
+    train.frames(1)
+    assert not scene.view.fills
+    assert scene.view.rewind.moment == moments[-2]
     player.press("back")
     train.frames(2)
     assert train.top is scene
     assert scene.view.rewind.moment is None
-    assert np.array_equal(scene.view.inside.network.values, scene.run.network_state.values)
     assert scene.charts.charts[0].marker is None
-
-
-def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
-    scene = train.top
-    train.press_on(texts.TRAIN_LOOK[0])
-    train.frames(1)
-    left, right = timeline(train)._track
-    train.click(((left + right) / 2, timeline(train).box.centery))
-    assert scene.view.rewind.share == pytest.approx(0.5, abs=0.1)
-    train.frames(2)
-    assert np.array_equal(scene.view.inside.network.values, scene.view.rewind.network_state.values)
-    train.click((right, timeline(train).box.centery))
-    assert scene.view.rewind.moment is None
 
 
 def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: Driver) -> None:
@@ -148,7 +125,7 @@ def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: D
     train.frames(2)
     assert scene.view.rewind.moment is not None
     assert_all_of_it_is_at(train, scene.view.rewind.moment)
-    assert texts.REWIND_AT.split("{")[0] in scene.view.rewind.words
+    assert texts.REWIND_AT.split("{")[0] in scene.view.rewind._words()
     train.press_on(texts.TRAIN_START)
     train.frames(2)
     assert scene.view.rewind.moment is None
@@ -168,9 +145,9 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     driver.frames(14)
     scene.view.rewind.go_to(decisions / 2)
     driver.frames(2)
-    assert scene.view.rewind.swarm_state is scene.view.swarms.past.swarm_state is None
+    assert scene.view.rewind.swarm_state is scene.view.swarms.shown.swarm_state is None
     checkpoint = scene.run.history.checkpoint_at(scene.view.rewind.moment)
-    assert np.array_equal(scene.view.inside.network.values, checkpoint.values)
+    assert np.array_equal(scene.view.rewind.network_state.values, checkpoint.values)
     began = scene.run.swarms.begins
     assert began is not None
     scene.view.rewind.go_to(began + 100)
@@ -186,7 +163,6 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
     assert scene.view.rewind.moment is None
     scene.view.rewind.go_to(100)
-    scene.view.rewind.go_to_share(0.5)
     assert scene.view.rewind.moment is None
 
 
@@ -213,9 +189,6 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     assert driver.top.view.rewind.moment == 300
     assert driver.top.view.rewind.swarm_state is None
     assert driver.top.view.inside.network is None or driver.top.view.inside.shown is None
-    driver.top.open(INSIDE)
+    driver.app.context.unfold(INSIDE)
     driver.frames(3)
-    driver.form.focus(timeline(driver))
-    driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
-    assert driver.top.view.rewind.moment is None
     assert isinstance(driver.top, TrainScene)

@@ -1,9 +1,8 @@
-"""Train's few knobs and its laboratory, through real pygame events; with real workers where their processes matter."""
+"""Train's laboratory, through real pygame events; with real workers where their processes matter."""
 
 import os
 import signal
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,74 +11,45 @@ import pygame
 import pytest
 
 from ai.files import read_json
-from ai.training.config import PRESETS, Config, in_force
-from ai.training.experiments import SABOTAGES, VERDICTS, sabotaged
+from ai.training.config import PRESETS, Config
+from ai.training.experiments import sabotaged
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.learn.scene import ChapterScene
-from game.scenes.menus.dialogs import QuestionDialog
-from game.scenes.train.knob import Knob
-from game.scenes.train.laboratory import FILE, Chosen, came_words, has_recovered, measured, why
 from game.training.library import Library
-from game.training.run import AHEAD, TrainingRun
-from game.ui.rows import RunRow
-from tests.support import inline_worker
+from game.training.run import AHEAD
 from tests.support.driver import Driver
 from tests.support.points import HEALTHY
 from tests.support.small import LANDERS as SMALL
+from tests.support.small import learn
 from tests.support.written import words_written
 
 
-def knobs(driver: Driver) -> list[str]:
-    driver.frames(1)
-    return [each.description.name for each in driver.form.widgets if isinstance(each, Knob)]
-
-
-def press_try(driver: Driver) -> None:
+def split(driver: Driver, sabotage: str = "rate_times_100") -> None:
     driver.press_on(texts.TRAIN_EXPERIMENTS)
-    driver.press_on(texts.SABOTAGES["rate_times_100"][0])
-    driver.press_on(texts.LAB_SKIP)
-    if isinstance(driver.top, QuestionDialog):
-        driver.press_on(texts.TRAIN_KEEP_FIRST)
+    driver.press_on(texts.SABOTAGES[sabotage][0])
+    driver.press_on(texts.LAB_GUESSES["never"])
+    driver.wait(lambda: driver.top.run.twin and len(driver.top.run.twin.history) >= 2)
     driver.frames(2)
 
 
-def split(driver: Driver) -> None:
-    press_try(driver)
-    driver.wait(lambda: driver.top.run.twin and len(driver.top.run.twin.history) >= 2)
-
-
-# Knobs
-
-
-def test_a_knob_without_effect_gives_way_to_the_one_that_acts(train: Driver) -> None:
-    scene = train.top
-    config = scene.knobs.config.changed(schedule_decisions=10_000)
-    scene.knobs.set_config(config, 0)
-    scene.knobs.show_in_force(in_force(config, 20_000, 300))
-    shown = knobs(train)
-    assert shown == ["final_learning_rate", "epsilon_end", "discount"]
-    scene.knobs.show_in_force(in_force(config, 5_000, 100))
-    assert knobs(train)[0] == "learning_rate"
-
-
-def test_three_knobs_come_first_and_a_page_on_demand(train: Driver) -> None:
-    assert knobs(train) == ["learning_rate", "epsilon_end", "discount"]
+def test_a_page_of_knobs_leads_to_the_chapters_that_explain_them(train: Driver) -> None:
     train.press_on(texts.TRAIN_MORE_KNOBS)
-    assert len(knobs(train)) == 16
-    chapters = {label for each in train.form.widgets if (label := each.label).startswith("Learn: ")}
-    assert len(chapters) >= 5, "doors to the chapters that explain them"
-    train.press_on(sorted(chapters)[0])
+    train.frames(1)
+    chapters = sorted({label for each in train.form.widgets if (label := each.label).startswith("Learn: ")})
+    assert len(chapters) >= 5
+    train.press_on(chapters[0])
     train.frames(2)
     assert isinstance(train.top, ChapterScene)
     train.key(pygame.K_ESCAPE)
     train.key(pygame.K_ESCAPE)
-    assert len(knobs(train)) == 3
+    train.frames(1)
+    assert train.widget(texts.TRAIN_MORE_KNOBS)
 
 
-# Experiments
+# Two runs
 
 
 @pytest.mark.slow
@@ -119,41 +89,26 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     assert "SIGKILL" in run.twin.problem
     beside.frames(21)
     assert beside.top.view.laboratory.came is None, "that is no verdict on the experiment"
-    beside.press_on(texts.LAB_KEEP_EXPERIMENT)
-    assert beside.said == texts.SPLIT_OVER
-    assert run.twin is not None
-    beside.press_on(texts.LAB_KEEP_RUN)
+    beside.press_on(texts.LAB_END)
     assert run.twin is None
     assert run.state is WorkerState.RUNNING
 
 
-def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(beside: Driver, tmp_path: Path) -> None:
-    split(beside)
-    run = beside.top.run
-    os.kill(run._worker.process_id, signal.SIGKILL)
-    beside.wait(lambda: run.state is WorkerState.FAILED)
-    assert "SIGKILL" in run.problem
-    beside.press_on(texts.LAB_KEEP_EXPERIMENT)
-    assert run.state is WorkerState.RUNNING
-    assert run.config.learning_rate == 0.3
-    beside.frames(5)
-    beside.app.close()
-    kept = Library(tmp_path / "user").rescued()
-    assert kept is not None
-    assert kept.changes
-
-
-def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path) -> None:
+def test_what_learnt_is_kept_first_and_only_the_healthy_run_lies_on_the_disk(train: Driver, tmp_path: Path) -> None:
+    learn(train)
+    train.top.knobs.turn("discount", 0.9)
+    train.wait(lambda: np.isfinite(train.top.run.history["success_rate"]).any())
     split(train)
+    assert train.top.run.earlier is not None
     train.app.close()
     library = Library(tmp_path / "user")
-    assert library.items() == []
+    assert [run.name for run in library.runs()] == [texts.TRAIN_NAME.format(preset="Modern")]
     left = library.rescued()
     assert left is not None
     assert "learning_rate" not in read_json(left.folder / "training.json")["changes"]
 
 
-def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(train: Driver) -> None:
+def test_a_pause_and_a_turned_knob_are_for_both_but_the_knob_that_differs(train: Driver) -> None:
     split(train)
     run = train.top.run
     train.top.knobs.turn("discount", 0.9)
@@ -166,131 +121,66 @@ def test_pause_step_and_a_turned_knob_are_for_both_but_the_knob_that_differs(tra
     assert run.twin.state is run.state is WorkerState.PAUSED
 
 
+def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
+    scene = train.top
+    learn(train)
+    train.wait(lambda: np.isfinite(scene.run.history["success_rate"]).any())
+    split(train)
+    train.press_on(texts.LAB_END)
+    assert scene.run.earlier is None, "its curve would lie on the other, bit for bit"
+
+
 # The guess
 
 
-def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver) -> None:
-    press = train.press_on
+def test_the_lab_asks_for_a_guess_flies_both_and_goes_on_with_the_run(train: Driver) -> None:
     scene, laboratory = train.top, train.top.view.laboratory
-    press(texts.TRAIN_EXPERIMENTS)
-    train.frames(2)
-    press(texts.SABOTAGES["no_replay"][0])
-    assert scene.view.laboratory.page == "guess"
+    train.press_on(texts.TRAIN_EXPERIMENTS)
+    train.press_on(texts.SABOTAGES["no_replay"][0])
+    assert laboratory.page == "guess"
     assert not scene.run.twin
-    train.frames(2)
-    press(texts.LAB_GUESSES["never"])
-    assert scene.view.laboratory.page == "result"
-    assert laboratory.chosen.guess == "never"
+    train.press_on(texts.LAB_GUESSES["never"])
+    assert (laboratory.page, laboratory.guess) == ("result", "never")
     assert scene.run.twin.config == sabotaged(SMALL, "no_replay")
     train.wait(lambda: len(scene.run.twin.history) >= 2 and len(scene.run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
-    assert laboratory.said["came"] == texts.LAB_TOO_EARLY
-    laboratory.came = "never"
-    train.frames(2)
-    press(next(each.label for each in train.form.widgets if each.label.startswith("Next experiment")))
-    assert (laboratory.page, laboratory.chosen) == ("guess", Chosen("no_exploration"))
-    laboratory.came, laboratory.page = None, "result"
-    train.frames(2)
-    press(texts.LAB_KNOBS)
-    assert knobs(train)
-    press(texts.TRAIN_EXPERIMENTS)
-    train.frames(2)
-    press(texts.LAB_KEEP_RUN)
+    train.press_on(texts.BACK)
+    train.frames(1)
+    train.press_on(texts.TRAIN_EXPERIMENTS)
+    train.frames(1)
+    train.press_on(texts.LAB_END)
     assert not scene.run.twin
-    assert knobs(train)
+    assert laboratory.page == "picks"
+    train.press_on(texts.BACK)
+    train.frames(1)
+    split(train, "no_exploration")
+    train.press_on(texts.TRAIN_ANEW)
+    train.frames(2)
+    assert laboratory.page == "", "another run has begun"
 
 
-def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
-    train: Driver, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    train.top.view.laboratory.chosen = Chosen("no_replay", "never")
-    laboratory, config = train.top.view.laboratory, PRESETS["modern"]
-    run = SimpleNamespace(config=config, history=History(), twin=None)
-    run.twin = SimpleNamespace(config=config, history=History(), problem="")
-    laboratory._run, laboratory._landed = run, (80, 12)
-    said: list[tuple[str, str]] = []
-    for _ in range(100):
-        landed = 0.97 if len(run.history) > 20 else 0.1
-        run.history.append(replace(HEALTHY, decisions=1000.0 * len(run.history), success_rate=landed))
-        run.twin.history.append(replace(HEALTHY, decisions=1000.0 * len(run.history), success_rate=0.1))
-        laboratory.follow()
-        if said[-1:] != [now := (laboratory._figures(), laboratory.said["came"])]:
-            said.append(now)
-    begins = texts.LAB_FIGURES.format(other="12", healthy="80")
-    assert said[0] == (begins, texts.LAB_TOO_EARLY)
-    assert [figures for figures, _ in said[:-1]] == [begins] * (len(said) - 1)
-    verdicts = [texts.LAB_AS_GUESSED, texts.LAB_NOT_AS_GUESSED]
-    assert [any(each in came for each in verdicts) for _, came in said] == [False] * (len(said) - 1) + [True]
-    run.history = run.twin.history
-    laboratory.follow()
-    assert (laboratory._figures(), laboratory.said["came"]) == said[-1], "a verdict stays"
-
-
-def flown(run: TrainingRun) -> bool:
-    """Whether a flight of it has ended."""
-    return bool(np.isfinite(run.history["success_rate"]).any())
-
-
-def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = train.top
-    monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the experiment begins
-    train.press_on(texts.TRAIN_START)
-    train.wait(lambda: len(scene.run.history) >= 1)
-    assert not np.isfinite(scene.run.history["success_rate"]).any()
-    monkeypatch.setattr(inline_worker, "TURNS", 40)
-    split(train)
-    for each in (scene.run, scene.run.twin):
-        train.wait(partial(flown, each))
-    train.press_on(texts.LAB_KEEP_EXPERIMENT)
-    train.frames(14)
-    curves = {run.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
-    legend = {row.label for row in train.form.widgets if isinstance(row, RunRow)}
-    assert legend <= curves
-    assert len(legend) > 1
-
-
-def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
-    scene = train.top
-    train.press_on(texts.TRAIN_START)
-    train.wait(lambda: np.isfinite(scene.run.history["success_rate"]).any())
-    split(train)
-    train.press_on(texts.LAB_KEEP_RUN)
-    train.frames(3)
-    assert scene.run.earlier == [], "its curve would lie on the other, bit for bit"
-    scene.knobs.turn("discount", 0.9)
-    train.wait(
-        lambda: len(scene.run.history.setting_changes) > 0 and np.isfinite(scene.run.history["success_rate"]).any()
-    )
-    split(train)
-    assert len(scene.run.earlier) == 1
-
-
-def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> None:
-    scene = train.top
-    for sabotage, answer in (("no_normalisation", texts.LAB_ALONE), ("short_sight", texts.LAB_SKIP)):
-        train.press_on(texts.TRAIN_EXPERIMENTS)
-        train.press_on(texts.SABOTAGES[sabotage][0])
-        train.press_on(answer)
+def test_a_verdict_is_given_once_with_the_numbers_it_goes_by(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    split(train, "no_shaping")
+    laboratory, config, run = train.top.view.laboratory, PRESETS["modern"], History()
+    twin = SimpleNamespace(config=config, history=History(), problem="")
+    laboratory._run = SimpleNamespace(config=config, history=run, twin=twin)
+    while not laboratory.came:
+        landed = 0.97 if len(run) > 20 else 0.1
+        run.append(replace(HEALTHY, decisions=1000.0 * len(run), success_rate=landed))
+        twin.history.append(replace(HEALTHY, decisions=1000.0 * len(run), success_rate=0.1))
+        laboratory._frame = -1
+        laboratory.update()
+    assert laboratory.came == "never"
+    figures = laboratory._figures
+    laboratory._run.history, laboratory._frame = twin.history, -1
+    laboratory.update()
+    assert laboratory._figures == figures, "a verdict stays"
+    train.frames(1)
+    with monkeypatch.context() as patch:
+        said = words_written(patch)
         train.frames(1)
-    assert scene.knobs.config.layer_normalisation is False, "flown alone, it is the run's own setting"
-    assert scene.run.twin.config.discount == 0.8
-    assert scene.view.laboratory.chosen.guess is None
-
-
-def test_why_a_part_matters_is_said_with_every_verdict() -> None:
-    for came in VERDICTS:
-        assert texts.SABOTAGE_WHY["no_replay"] in why(came, "no_replay"), came
-    assert why("as_well", "no_replay") != why("later", "no_replay"), "there it was not missed"
-    assert not why(None, "no_replay")
-    assert why("later", "no_replay", recovered=True) == texts.LAB_RECOVERED
-    assert has_recovered([91, 92])
-    assert not has_recovered([91, 90])
-    assert has_recovered([91, 90], was=True), "no word comes and goes by chance"
-    assert not has_recovered([91, 60], was=True)
-    assert not has_recovered([91, None])
-    assert texts.LAB_NOT_AS_GUESSED in came_words("never", "later")
-    assert texts.LAB_AS_GUESSED in came_words("never", "never")
+    assert " ".join(said).count(texts.LAB_AS_GUESSED.split()[0]) == 1
 
 
 def test_two_lines_in_every_chart_and_both_shares_are_those_of_the_charts(
@@ -316,24 +206,9 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     scene.view.rewind.go_to(float(run.swarms.moments[0]))
     train.frames(2)
     assert scene.view.rewind.moment == run.swarms.moments[0]
-    shown = [swarm.swarm_state.decisions for swarm in scene.view.swarms.pair]
+    shown = [swarm.swarm_state.decisions for swarm in scene.view.swarms.both]
     assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.view.rewind.moment).decisions]
     assert shown[1] < run.twin.swarm_state.decisions
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
-    assert scene.view.swarms.pair[1].swarm_state is run.twin.swarm_state
-
-
-def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
-    train.top.view.laboratory.open()
-    train.frames(2)
-    shown = [each.label for each in train.form.widgets]
-    shares = read_json(FILE)["shares"]
-    for name in SABOTAGES:
-        assert texts.SABOTAGES[name][0] in shown
-        assert texts.SABOTAGE_WHY[name]
-        (other, low, high), (healthy, least, most) = (
-            [100 * part for part in shares[each]] for each in (name, "modern")
-        )
-        figures = {"other": other, "low": low, "high": high, "healthy": healthy, "least": least, "most": most}
-        assert measured(name) == texts.LAB_MEASURED.format(seeds=4, decisions=100_000, **figures), name
+    assert scene.view.swarms.both[1].swarm_state is run.twin.swarm_state

@@ -1,27 +1,23 @@
 """Of both scenes that train: what is seen first, in windows of any shape, and what a failure leaves behind."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pygame
 import pytest
 
-from ai.training.history import History
 from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import Canvas
 from game.scenes.train import scene
 from game.scenes.train.digits import digit_training
 from game.scenes.train.landers import INSIDE
-from game.scenes.train.scene import CHARTS, MORE, TrainScene
+from game.scenes.train.scene import MORE, TrainScene
 from game.training.library import DigitModels, Library
-from game.training.record import put_beside
 from game.ui.context import Context
 from tests.game.tour.checkers import MOST_WORDS
 from tests.support.driver import Driver
-from tests.support.points import HEALTHY
 from tests.support.written import Written
 
 WINDOWS = (((1280, 720), "largest"), ((800, 600), "normal"), ((720, 1280), "normal"))
@@ -46,7 +42,7 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
 
 def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     """At first sight `tests/game/tour` counts them."""
-    train.top.open(MORE)
+    train.app.context.unfold(MORE)
     train.press_on(texts.TRAIN_START)
     train.wait(lambda: len(train.top.run.history) >= 4)
     train.press_on(texts.TRAIN_PAUSE)
@@ -57,16 +53,15 @@ def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.Mo
 
 def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
     driver = open_game(TrainScene)
-    for name, words in ((MORE, texts.MORE), (CHARTS, texts.TRAIN_MORE_CHARTS), (INSIDE, texts.TRAIN_LOOK)):
+    for name, words in ((MORE, texts.MORE), (INSIDE, texts.TRAIN_LOOK)):
         driver.press_on(words[0])
         driver.frames(1)
         assert name in driver.saved()["opened"].split()
     again = open_game(TrainScene)
     again.frames(1)
-    assert again.top.view.inside.opened
+    assert again.top.view.fills
     again.key(pygame.K_ESCAPE)
     again.frames(1)
-    assert len(again.top.charts.charts) == 4
     assert again.widget(texts.TRAIN_EXPERIMENTS)
 
 
@@ -79,35 +74,17 @@ def test_no_text_lies_on_another_in_any_window(
     driver.wait(lambda: len(driver.top.run.history) >= 6)
     driver.press_on(texts.TRAIN_PAUSE)
     driver.top.knobs.turn("n_step", 3)
-    names = [repr(word) for word in (texts.SWARM_BEST, texts.SWARM_LUCKIEST)]
     for size, text_size in WINDOWS:
         settings.text_size = text_size
         driver.resize(size)
-        for opened in ("", f"{CHARTS} {MORE}", INSIDE):
+        for opened in ("", MORE, INSIDE):
             with subtests.test(size=size, text_size=text_size, opened=opened):
                 settings.opened = ""
                 for name in opened.split():
-                    driver.top.open(name)
+                    driver.app.context.unfold(name)
                 driver.frames(14)
                 lying = written_in(driver, monkeypatch)[1]
-                assert not [pair for pair in lying if not any(name in pair for name in names)]
-
-
-def test_a_run_beside_is_taken_away_by_its_row(open_game: Callable[..., Driver]) -> None:
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    names = ["five", "four", "three", "two", "one"]
-    for name in reversed(names):
-        run = History()
-        for second in range(20):
-            run.append(replace(HEALTHY, seconds=second, decisions=100 * second))
-        put_beside(driver.top.run.earlier, name, run)
-    for gone, press in (("two", driver.press_on), ("four", lambda name: driver.click(driver.widget(name).box.center))):
-        driver.frames(30)
-        assert {run.name for run in driver.top.charts.charts[0].runs} == set(names)
-        press(gone)
-        names.remove(gone)
-    assert [each.name for each in driver.top.run.earlier] == names
+                assert not [pair for pair in lying if repr(texts.SWARM_BEST) not in pair]
 
 
 def held(folder: Path) -> bool:
@@ -126,7 +103,7 @@ def test_one_that_cannot_be_built_lets_go_of_the_place_of_its_runs(
     def fail(*_: Any, **__: Any) -> None:
         raise ValueError("no knobs")
 
-    monkeypatch.setattr(scene, "KnobsPanel", fail)
+    monkeypatch.setattr(scene, "RunSettings", fail)
     with pytest.raises(ValueError, match="no knobs") as kept:  # and with it, the scene
         first(context)
     assert not held(context.user_dir)

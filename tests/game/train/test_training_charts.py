@@ -1,7 +1,6 @@
 """The charts of runs: in points whatever a network counts in, and side by side on one axis."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,17 +8,9 @@ import pytest
 from ai.digits.training import DigitProgress
 from ai.training.config import PRESETS, Config
 from ai.training.history import COLUMNS, DIGIT_COLUMNS, History, SettingChange, Validation
-from ai.training.lander_session import LanderSession
 from ai.training.loop import PARTS
-from ai.training.messages import RunStarted
 from game.core import texts
-from game.core.worker import WorkerState
 from game.scenes.train.charts import DIGIT_CHARTS, LANDER_CHARTS, Beside, TrainingCharts, ticks_of
-from game.training.library import Library
-from game.training.record import EarlierRun, put_beside, take_away
-from game.training.run import TrainingRun
-from game.training.run_kind import LANDERS
-from game.ui.curves import run_style
 from tests.support.points import HEALTHY, point
 
 NUMBERS = list(COLUMNS[: -len(PARTS)])
@@ -31,7 +22,7 @@ def run_of(config: Config, points: float) -> History:
     history.reward_scale = config.reward_scale
     for second in range(20):
         values = dict.fromkeys(NUMBERS, 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
-        history.append(point(**values))
+        history.append(point(**values, parts=(0.0, 40.0, *[0.0] * (len(PARTS) - 3), -39.0)))
     return history
 
 
@@ -43,37 +34,30 @@ def long_run(seconds: float, decisions: float) -> History:
     return history
 
 
-def looked(
-    charts: TrainingCharts, history: History, beside: Beside | None = None, moment: int | None = None
-) -> TrainingCharts:
-    charts.take(history, beside or Beside(), "", moment)
-    for _ in charts.charts:
-        charts.go_on()
+def looked(history: History, beside: Beside | None = None, moment: int | None = None) -> TrainingCharts:
+    charts = TrainingCharts(LANDER_CHARTS)
+    charts.take(history, beside, "", moment)
     return charts
 
 
-def test_what_is_expected_is_drawn_and_said_in_points_whatever_networks_count_in() -> None:
+def test_what_is_expected_is_drawn_and_said_in_points_with_what_gave_and_took_most() -> None:
     modern, classic = (run_of(PRESETS[name], -80.0) for name in ("modern", "classic"))
     assert modern["mean_q"][0] != classic["mean_q"][0]
+    parts = {"gives": texts.REWARD_PARTS[PARTS[1]][0], "takes": texts.REWARD_PARTS[PARTS[-1]][0]}
     for history in (modern, classic):
-        chart = looked(TrainingCharts(LANDER_CHARTS), history).charts[1]
+        chart = looked(history).charts[1]
         earned, expected = chart.runs
         np.testing.assert_allclose(expected.y, -80.0, rtol=1e-6)
         np.testing.assert_allclose(earned.y, 1.0)
-        assert chart.caption == texts.TRAIN_SCORES.format(1, -80).replace("-", "−")
-    chart = looked(TrainingCharts(LANDER_CHARTS), run_of(PRESETS["modern"], -0.2)).charts[1]
-    assert chart.caption == texts.TRAIN_SCORES.format(1, 0), "no −0"
+        said = texts.TRAIN_SCORES.format(earned=1, given=40, taken=-39, expected=-80, **parts)
+        assert chart.caption == said.replace("-", "−")
 
 
-def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
+def test_an_experiment_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
     healthy, other = (run_of(PRESETS["modern"], 80.0) for _ in range(2))
-    charts = TrainingCharts(LANDER_CHARTS)
-    charts.show(more=True)
-    looked(charts, healthy, Beside([EarlierRun("other", other, 1)], "healthy", paid_otherwise=True))
-    compared = {chart.label: [run.name for run in chart.runs] for chart in charts.charts}
-    for name in ("success", "loss", "epsilon"):
-        assert compared[texts.TRAIN_CHARTS[name]] == ["healthy", "other"], name
-    assert "other" not in compared[texts.TRAIN_CHARTS["mean_return"]]
+    landed, score = looked(healthy, Beside("other", other, in_step=True, paid_otherwise=True)).charts
+    assert [run.name for run in landed.runs] == [texts.TRAIN_THIS, "other"]
+    assert [run.name for run in score.runs] == [texts.TRAIN_THIS]
 
 
 def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> None:
@@ -82,7 +66,9 @@ def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> N
         history.append(DigitProgress(float(second), second, 1.0, 0.1 * second, 0.5, 0.01, 1.0))
         history.append(Validation(second, 0.9, 0.9, best=True, seconds=float(second)))
     history.append(SettingChange(2, "learning_rate", 0.1, 0.2, seconds=2.0))
-    loss, accuracy = looked(TrainingCharts(DIGIT_CHARTS), history).charts
+    charts = TrainingCharts(DIGIT_CHARTS)
+    charts.take(history, None, "", None)
+    loss, accuracy = charts.charts
     assert loss.runs[0].y.tolist() == pytest.approx([0.1, 0.2, 0.3, 0.4])
     assert [run.y.tolist() for run in accuracy.runs] == [[90.0] * 4, [50.0] * 4]
     assert accuracy.caption == texts.DIGIT_RUN_BOTH.format(90.0, 50.0)
@@ -90,78 +76,19 @@ def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> N
     assert (tick.x, tick.text) == (2.0, f"{texts.KNOBS['learning_rate']} 0.2")
 
 
-def flown() -> History:
-    history = History()
-    history.append(HEALTHY)
-    return history
-
-
-def test_a_run_keeps_its_style_as_others_come_and_go() -> None:
-    runs: list[EarlierRun] = []
-    for number in range(12):
-        put_beside(runs, f"run {number}", flown())
-    put_beside(runs, "without a curve", History())
-    styles = {each.name: each.style for each in runs}
-    assert len(set(styles.values())) == 12
-    assert 0 not in styles.values(), "that is the run that goes on"
-    take_away(runs, styles["run 3"])
-    assert {each.name: each.style for each in runs} == {name: each for name, each in styles.items() if name != "run 3"}
-    new, again = flown(), flown()
-    put_beside(runs, "new", new)
-    assert runs[0] == EarlierRun("new", new, styles["run 3"])
-    put_beside(runs, "run 7", again)
-    assert runs[0] == EarlierRun("run 7", again, styles["run 7"])
-    assert len(runs) == 12
-
-
-def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both() -> None:
-    styles = [run_style(number) for number in range(1, 25)]
-    assert len(set(styles)) == 24
-    for (colour, dash), (other, dashes) in pairwise(styles):
-        assert colour != other
-        assert dash != dashes
-    assert run_style(0)[1] == ()
-    assert run_style(25) == run_style(1)
-
-
-def test_a_short_run_beside_a_long_one_is_measured_by_the_same_seconds() -> None:
-    charts = TrainingCharts(LANDER_CHARTS)
-    looked(charts, long_run(12.0, 200_000.0), Beside([EarlierRun("long", long_run(367.0, 4e6), 1)]))
-    for chart in charts.charts:
+def test_a_run_before_is_measured_by_the_same_seconds_and_an_experiment_by_the_same_decisions() -> None:
+    for chart in looked(long_run(12.0, 2e5), Beside("long", long_run(367.0, 4e6))).charts:
         assert chart.end == pytest.approx(367.0)
         assert chart.runs[0].x[-1] == pytest.approx(12.0)
+    quick = long_run(30.0, 1e6)  # it learns in a third of the time, and waits for its twin
+    for chart in looked(long_run(90.0, 1e6), Beside("quick", quick, in_step=True)).charts:
+        assert [run.x[-1] for run in chart.runs] == pytest.approx([90.0, 90.0])
 
 
 def test_a_place_on_the_axis_is_a_moment_of_the_run() -> None:
-    charts, run = TrainingCharts(LANDER_CHARTS), long_run(100.0, 1e6)
-    looked(charts, run)
+    run = long_run(100.0, 1e6)
+    charts = looked(run)
     assert charts.decisions_at(50.0) == pytest.approx(500_000)
     assert charts.decisions_at(200.0) == np.inf, "beyond its end is now"
-    looked(charts, run, moment=500_000)
-    assert [chart.marker for chart in charts.charts] == pytest.approx([50.0] * 2)
-    looked(charts, run)
     assert charts.charts[0].marker is None
-
-
-def test_a_run_says_in_which_unit_it_counts(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    config = PRESETS["classic"].changed(num_envs=1, hidden=(4,))
-    session = LanderSession.live(config, 0, keep=tmp_path / "run")
-    messages = next(session)
-    for _ in range(3):
-        next(session)
-    session.close()
-    assert History.read(tmp_path / "run").reward_scale == config.reward_scale
-
-    class StubWorker:
-        state = WorkerState.RUNNING
-
-        def __init__(self, *_: object, **__: object) -> None: ...
-        def set_pace(self, _: object) -> None: ...
-        def poll(self) -> tuple[object, ...]:
-            return tuple(message for message in messages if isinstance(message, RunStarted))
-
-    monkeypatch.setattr("game.training.run.Worker", StubWorker)
-    run = TrainingRun(LANDERS, Library(tmp_path))
-    run.begin(config, 0)
-    run.poll()
-    assert run.history.reward_scale == config.reward_scale
+    assert [chart.marker for chart in looked(run, moment=500_000).charts] == pytest.approx([50.0] * 2)

@@ -27,13 +27,13 @@ class Notebook(TrainingRun):
         if self._worker:
             self._worker.close(5.0)
 
-    def note(self, name: str, seconds: float = 0.0, note: str = "") -> str:
-        return self.begin((name, seconds, note), 0)
+    def note(self, name: str, seconds: float = 0.0, note: str = "") -> None:
+        self.begin((name, seconds, note), 0)
 
-    def _launch(self, config: Any, seed: int, resume: Path | None) -> str:
+    def _launch(self, config: Any, seed: int, resume: Path | None) -> None:
         name, seconds, note = config
         self._worker = Worker(keep, self.path, name, seconds)
-        return note
+        self._notes.append(note)
 
     @property
     def lines(self) -> list[str]:
@@ -65,10 +65,10 @@ def wait(learner: Notebook, until: Callable[[], object]) -> list[str]:
 
 def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(notebook: Notebook):
     """Of two that wait the last one is meant, and so is what is asked meanwhile."""
-    assert notebook.note("one", 0.3, "at once") == "at once"
-    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    assert notebook.note("two", note="never") == ""
-    assert notebook.note("three", note="later") == ""
+    notebook.note("one", 0.3, "at once")
+    assert wait(notebook, lambda: notebook.state is WorkerState.RUNNING) == ["at once"]
+    notebook.note("two", note="never")
+    notebook.note("three", note="later")
     notebook._order(Worker.pause)
     assert notebook.waiting
     assert notebook.state is WorkerState.STARTING

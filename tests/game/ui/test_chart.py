@@ -1,21 +1,18 @@
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pygame
 import pytest
 
-from ai.training.history import History, SettingChange
 from game.drawing.canvas import Canvas
-from game.scenes.train.charts import ticks_of
+from game.drawing.tokens import NET
 from game.ui import chart as module
 from game.ui import plotting
 from game.ui.chart import Chart
 from game.ui.charts import Charts
-from game.ui.curves import Series, Tick, run_style
+from game.ui.curves import BESIDE, Series, Tick
 from game.ui.tooltip import draw_tooltip
-from tests.support.points import HEALTHY
 
 NAN, INF = float("nan"), float("inf")
 
@@ -29,8 +26,7 @@ def chart_of(*runs: Sequence[float], **options: Any) -> Chart:
     """A chart of runs that tell a value every second."""
     chart = Chart("LOSS", empty="nothing yet", **options)
     chart.move(pygame.FRect(40, 450, 372, 128))
-    log = bool(options.get("log"))
-    series = [Series(range(len(y)), y, f"run {n}", *run_style(n), log=log) for n, y in enumerate(runs)]
+    series = [Series(range(len(y)), y, f"run {n}", *(BESIDE if n else (NET, ()))) for n, y in enumerate(runs)]
     chart.set(series, max([1.0, *(len(y) - 1.0 for y in runs)]), [Tick(1.0, "checkpoint"), Tick(1.0, "a knob", "knob")])
     return chart
 
@@ -68,15 +64,6 @@ def test_limits_do_not_flicker_while_the_numbers_still_fit() -> None:
         lines = plotting.steady_grid((0.0, most), lines)
     np.testing.assert_array_equal(plotting.steady_grid((0.0, 0.93), lines), lines)
     assert plotting.steady_grid((0.0, 0.1), lines)[-1] < 0.5
-
-
-def test_decades_enclose_what_is_shown() -> None:
-    for low, high, lines in (
-        (0.3, 700.0, [0.2, 1, 10, 100, 1000]), (1.0, 10.0, [1, 10]), (2.1, 4.0, [2, 5]), (0.9, 1.1, [0.5, 1, 2]),
-        (3.0, 3.0, [2, 5]),
-    ):  # fmt: skip
-        np.testing.assert_allclose(10 ** plotting.decades(np.log10(low), np.log10(high)), lines)
-    assert np.isfinite(plotting.decades(-300.0, 300.0)).all()
 
 
 def test_smoothing_takes_noise_away_and_keeps_a_slope_and_a_bump_in_their_place() -> None:
@@ -136,15 +123,6 @@ def test_the_cursor_reads_the_nearest_point_of_each_run_inside_the_box(
     assert len(boxes) == 4
 
 
-def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_they_are(canvas: Canvas) -> None:
-    read: list[float] = []
-    chart = chart_of([1.0, 10.0, 100.0, 0.0], log=True, read=lambda value: str(read.append(value)))
-    chart.draw(canvas)
-    heights = [chart.place(0.0, np.log10(value))[1] for value in (1.0, 10.0, 100.0)]
-    assert heights[0] - heights[1] == pytest.approx(heights[1] - heights[2])
-    assert read == [100.0], "the last value that has a logarithm"
-
-
 def test_the_curve_is_where_its_values_are(canvas: Canvas) -> None:
     chart = chart_of(np.full(100, 25.0), limits=(0.0, 100.0))
     chart.draw(canvas)
@@ -167,10 +145,9 @@ UGLY = {
 }
 
 
-@pytest.mark.parametrize("log", [False, True])
-def test_ugly_numbers_are_drawn(canvas: Canvas, log: bool) -> None:
+def test_ugly_numbers_are_drawn(canvas: Canvas) -> None:
     for name, y in UGLY.items():
-        chart = chart_of(y, y, log=log)
+        chart = chart_of(y, y)
         chart.mark(1.0, "checkpoint 2 s: fly against it, and a caption that is much too long for such a small chart")
         for point in ((60.0, 500.0), (405.0, 577.0)):
             point_at(chart, point)
@@ -186,15 +163,3 @@ def test_numbers_are_written_short() -> None:
         (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
     ):  # fmt: skip
         assert plotting.compact(value) == text
-
-
-def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
-    run = History()
-    for number in range(40):
-        run.append(replace(HEALTHY, seconds=float(number), decisions=1000.0 * number))
-    for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
-        run.append(SettingChange(10_000, name, 0, 1))
-    run.append(SettingChange(20_000, "gradient_steps", 1, 2))
-    marks = [tick for tick in ticks_of(run) if tick.kind == "knob"]
-    assert [tick.x for tick in marks] == [10.0, 20.0]
-    assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"

@@ -106,7 +106,7 @@ def test_who_looks_elsewhere_lets_go(take: Take):
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player = take(TrainScene)
     player.press("back")
-    player.top.open(INSIDE)
+    player.app.context.unfold(INSIDE)
     player.frames(2)
     player.form.focus(player.the(VirtualPointer))
     player.press("confirm")
