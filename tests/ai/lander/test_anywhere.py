@@ -11,7 +11,7 @@ from ai.lander.environment import LIMITS, NUM_FEATURES, OBSERVATION_SCALE, PARAM
 from ai.lander.ground import Ground, Pad
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
-from tests.support.landers import fly, placed, put
+from tests.support.landers import STAND, fly, placed, put
 
 HARD = Site(9.81, 16.0, 0.06, 3.0, 3.0, 12.0, 0.2, 0.3, 4.0, 5.0, 0.4, 0.9, 2.0, 15.0, 2)
 MIXED = (Site(), HARD, Site(wind=-0.3, swing=-1.0, pad=3), Site(gravity=0.9, thrust=3.0, air=0.2, tank=2.0))
@@ -68,6 +68,17 @@ def test_sites_are_of_the_kinds_asked_for():
     for wrong in ((), ("moon", "venus")):
         with pytest.raises(ValueError, match="sites are some of"):
             AnywhereEnv(1, 0, sites=wrong)
+
+
+def test_stricter_limits_hold_and_are_not_observed():
+    env = AnywhereEnv(2, 0, "fixed", frame_skip=1, sites=("moon",))
+    before = put(env, (0.0, STAND + 0.01, 0, -0.75 * LIMITS.touch_speed)).snapshot()
+    for strictness, outcome in ((1.0, Outcome.FLYING), (0.5, Outcome.CRASHED)):
+        env.restore(before)
+        env.strictness = strictness
+        fly(env, steps=5)
+        assert (env.outcome == outcome).all()
+        assert env.around()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
 
 
 @pytest.mark.slow
