@@ -105,7 +105,7 @@ def test_wind_engine_fuel_and_pad_are_seen_and_announced(subtests):
             assert [now[name] for name in names] == pytest.approx(expected, abs=1e-3)
     assert seen(falling(replace(HARD, tank=0.5), 1.0, 3))["fuel left"] == 0.0
     env = falling(Conditions(), 0.5)
-    env.gravity = 3.0
+    env.world.gravity = (0.0, -3.0)
     assert seen(env)["gravity"] == pytest.approx(3.0)
 
 

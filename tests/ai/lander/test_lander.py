@@ -187,7 +187,7 @@ def test_the_lowest_height_clears_the_ground_and_no_more():
     for x, angle in np.random.default_rng(2).uniform((-6.0, -3.0), (6.0, 3.0), (40, 2)):
         for above, touches in ((0.05, False), (-0.1, True)):
             env = placed((x, LanderEnv(1).lowest(x, angle) + above, 0, 0, angle))
-            env.gravity = 0.0
+            env.world.gravity = (0.0, -0.0)
             env.fly(np.zeros(1, np.intp))
             assert (env.world.contacts is not None) == touches
 
