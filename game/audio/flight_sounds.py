@@ -8,7 +8,6 @@ from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.sensing import near_edges
 from game.audio.mixer import Sound
-from game.core.clock import TimeScale
 
 _ENDS: Final = {
     Outcome.LANDED: "landed",
@@ -29,13 +28,12 @@ class FlightSound:
     Args:
         sound: the mixer.
         env: the landers' environment.
-        pace: pace of the picture; a crash in slow motion sounds slow as well.
         warns: whether to warn of a likely crash.
 
     """
 
-    def __init__(self, sound: Sound, env: LanderEnv, pace: TimeScale | None = None, *, warns: bool = True) -> None:
-        self._sound, self._env, self._pace, self._warns = sound, env, pace or TimeScale(), warns
+    def __init__(self, sound: Sound, env: LanderEnv, *, warns: bool = True) -> None:
+        self._sound, self._env, self._warns = sound, env, warns
         self._slot = -1
         self._time = 0.0
         self._outcome = Outcome.FLYING
@@ -71,7 +69,7 @@ class FlightSound:
             self._sound.play("touchdown", 0.15 + 0.85 * float(self._env.impact[self._slot, 0]) / self._touch_speed)
             self._sound.play("lost")
         else:
-            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
+            self._sound.play(_ENDS[outcome])
 
     @property
     def _touch_speed(self) -> float:

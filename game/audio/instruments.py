@@ -21,6 +21,7 @@ GROUPS: Final = ("effects", "interface", "ambience")
 _D4: Final = 293.66  # Hz
 _BEDS: Final = 6.0  # seconds of a noise loop, long enough that its repetition is not heard
 _PAD: Final = 24.0
+_DETUNED: Final = 2 ** (9 / 1200) - 1  # standard deviation of a choir's tuning: nine cents
 
 
 @dataclass(frozen=True)
@@ -102,11 +103,6 @@ def _crash(rng: np.random.Generator) -> Signal:
     return synth.room(rng, _blast(rng), 2.2, 0.4)
 
 
-def _slow_crash(rng: np.random.Generator) -> Signal:
-    """Crash in slow motion, deeper at first; slowed half as much as the picture, to be audible on any loudspeaker."""
-    return synth.room(rng, synth.slowed(_blast(rng), 0.55, 0.65, 0.4), 2.2, 0.4)
-
-
 def _blast(rng: np.random.Generator) -> Signal:
     """Blast: noise that grows duller as it fades, a low thud, and fragments that fall one by one."""
     bands = ((low_pass(160, 1), 1.0, 2.0), (band_pass(120, 900, 1), 0.5, 0.9), (band_pass(700, 3200, 1), 0.16, 0.3))
@@ -165,18 +161,31 @@ def _steps(rng: np.random.Generator, notes: tuple[float, float]) -> Signal:
 # Ambience
 
 
+def _choir(rng: np.random.Generator, frequency: float) -> Signal:
+    """Many voices on one note, each a little out of tune.
+
+    Every harmonic is a bell-shaped band of noise, wider the higher it is: PADsynth, by N. O. Paul (2005).
+    """
+
+    def bells(f: Signal) -> Signal:
+        harmonics = [
+            number**-2.2 * np.exp(-0.5 * ((f / (number * frequency) - 1) / _DETUNED) ** 2) for number in range(1, 7)
+        ]
+        return np.asarray(np.sum(harmonics, axis=0))
+
+    return synth.noise(rng, _PAD, bells)
+
+
 def _pad(rng: np.random.Generator) -> Signal:
     """Ambient pad: open fifths over D; every note is a choir that swells at its own pace."""
-    harmonics = [number**-1.7 for number in range(1, 7)]
+    turns, notes = synth.clock(_PAD) / _PAD, ((-24, 0.8), (-17, 1.0), (-12, 0.9), (-5, 0.7), (2, 0.5), (9, 0.22))
 
     def side() -> Signal:
-        voices = []
-        for number, (semitones, gain) in enumerate(
-            ((-24, 0.8), (-17, 1.0), (-12, 0.9), (-5, 0.7), (2, 0.5), (9, 0.22))
-        ):
-            voice = gain * synth.choir(rng, _PAD, note(semitones), harmonics, 9.0, top=3200.0)
-            voices.append(synth.swell(voice, 1 + number % 3, 0.6, 2 * np.pi * number / 6))
-        return synth.looped(np.sum(voices, axis=0), _PAD)
+        total = np.zeros(len(turns))
+        for number, (semitones, gain) in enumerate(notes):
+            swell = 1 + 0.6 * np.cos(2 * np.pi * ((1 + number % 3) * turns + number / 6))
+            total += gain * swell * _choir(rng, note(semitones))
+        return total
 
     return np.stack([side(), side()], axis=1)
 
@@ -209,7 +218,6 @@ INSTRUMENTS: Final[dict[str, Instrument]] = {
     "touchdown": Instrument(_thud, "effects", -9),
     "contact": Instrument(_bell, "effects", -15),
     "crash": Instrument(_crash, "effects", -6),
-    "slow_crash": Instrument(_slow_crash, "effects", -6),
     "landed": Instrument(_landed, "effects", -12),
     "lost": Instrument(_lost, "effects", -15),
 }

@@ -1,8 +1,8 @@
 """Sound synthesis with arrays: oscillators, filters, noise, envelopes and reverberation.
 
 A signal holds floats between -1 and 1, RATE of them a second: mono (n,), or stereo (n, 2) with the left side
-first. A loop has no seam because it holds whole periods only: noise and pads are made as spectra, whose inverse
-Fourier transform is periodic.
+first. A loop has no seam because it holds whole periods only: noise is made as a spectrum, whose inverse Fourier
+transform is periodic.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Signal = NDArray[np.float64]
-Spectrum = NDArray[np.complex128]
 Gain = Callable[[Signal], Signal]  # gain as a function of frequencies in Hz, all above zero
 
 RATE: Final = 44_100
@@ -66,7 +65,7 @@ def band_pass(low: float, high: float, order: float = 2) -> Gain:
     return lambda frequency: high_pass(low, order)(frequency) * low_pass(high, order)(frequency)
 
 
-# Loops, as spectra
+# Loops
 
 
 def noise(rng: np.random.Generator, seconds: float, gain: Gain) -> Signal:
@@ -75,51 +74,7 @@ def noise(rng: np.random.Generator, seconds: float, gain: Gain) -> Signal:
     spectrum = np.zeros(count // 2 + 1, np.complex128)
     frequency: Signal = np.fft.rfftfreq(count, 1 / RATE)[1:].astype(np.float64)
     spectrum[1:] = gain(frequency) * np.exp(2j * np.pi * rng.random(len(frequency)))
-    return unit(_loop(spectrum, count))
-
-
-def choir(
-    rng: np.random.Generator, seconds: float, frequency: float, amplitudes: Sequence[float], cents: float, top: float
-) -> Spectrum:
-    """Return the spectrum of many voices on one note, each a little out of tune, up to `top` Hz.
-
-    Every harmonic is a bell-shaped band of noise, wider the higher it is: PADsynth, by N. O. Paul (2005).
-
-    Args:
-        rng: draws the phases.
-        seconds: length of the loop.
-        frequency: of the note, in Hz.
-        amplitudes: of its harmonics, from the first on.
-        cents: standard deviation of the tuning.
-        top: highest frequency, in Hz; the harmonics may end below it.
-
-    """
-    spectrum = np.zeros(round(seconds * top) + 1, np.complex128)
-    for number, amplitude in enumerate(amplitudes, 1):
-        middle = number * frequency * seconds  # in bins
-        spread = middle * (2 ** (cents / 1200) - 1)
-        bins = np.arange(max(1, int(middle - 5 * spread)), min(len(spectrum), int(middle + 5 * spread) + 2))
-        bell = np.exp(-0.5 * ((bins - middle) / spread) ** 2) / np.sqrt(spread)
-        spectrum[bins] += amplitude * bell * np.exp(2j * np.pi * rng.random(len(bins)))
-    return spectrum
-
-
-def swell(spectrum: Spectrum, turns: int, depth: float, phase: float) -> Spectrum:
-    """Modulate a loop's amplitude by 1 + depth cos(2π turns t + phase): it swells and fades `turns` times."""
-    side = 0.5 * depth * np.exp(1j * phase)
-    swelling = spectrum.copy()
-    swelling[turns:] += side * spectrum[:-turns]
-    swelling[:-turns] += side.conjugate() * spectrum[turns:]
-    return swelling
-
-
-def looped(spectrum: Spectrum, seconds: float) -> Signal:
-    """Return the loop with a given spectrum, root mean square 1; frequencies beyond the spectrum's end are 0."""
-    return unit(_loop(spectrum, round(seconds * RATE)))
-
-
-def _loop(spectrum: Spectrum, count: int) -> Signal:
-    return np.asarray(np.fft.irfft(spectrum, count), np.float64)
+    return unit(np.asarray(np.fft.irfft(spectrum, count), np.float64))
 
 
 # Envelopes
@@ -143,18 +98,6 @@ def late(signal: Signal, delay: float) -> Signal:
     return np.concatenate([np.zeros((round(delay * RATE), *signal.shape[1:])), signal])
 
 
-def slowed(signal: Signal, rate: float, held: float, back: float) -> Signal:
-    """Return a signal (n,) or (n, 2) played at `rate` for `held` seconds, then back at full speed within `back`."""
-    longest = clock(len(signal) / RATE / rate)
-    pace = np.interp(longest, (held, held + back), (rate, 1.0))
-    place = np.cumsum(pace)
-    place = place[place < len(signal) - 1]
-    own = np.arange(len(signal))
-    if signal.ndim == 1:
-        return np.interp(place, own, signal)
-    return np.stack([np.interp(place, own, side) for side in signal.T], axis=1)
-
-
 def together(*signals: Signal) -> Signal:
     """Return the sum of signals of any lengths, all mono or all stereo."""
     whole = np.zeros((max(map(len, signals)), *signals[0].shape[1:]))
@@ -168,13 +111,8 @@ def together(*signals: Signal) -> Signal:
 
 def place(signal: Signal, pan: float) -> Signal:
     """Return a mono signal panned to stereo, from -1, left, to 1, right, with equal power everywhere."""
-    return np.asarray(signal[:, None] * pan_gains(pan))
-
-
-def pan_gains(pan: float) -> Signal:
-    """Return the gains of the left and the right side, (2,): 1 each in the middle, equal power in between."""
-    angle = 0.25 * np.pi * (1 + min(max(pan, -1.0), 1.0))
-    return np.asarray(np.sqrt(2) * np.array([np.cos(angle), np.sin(angle)]))
+    angle = 0.25 * np.pi * (1 + pan)
+    return np.asarray(np.sqrt(2) * signal[:, None] * (np.cos(angle), np.sin(angle)))
 
 
 def room(rng: np.random.Generator, signal: Signal, seconds: float, wet: float) -> Signal:
@@ -188,15 +126,9 @@ def room(rng: np.random.Generator, signal: Signal, seconds: float, wet: float) -
     decay = 0.001 ** (clock(seconds) / seconds) * edges(seconds, 0.004, 0.02)
     walls = [decay * noise(rng, seconds, low_pass(_ROOM_BRIGHTNESS, 1)) for _ in range(2)]
     answer = late(np.stack([wall / np.linalg.norm(wall) for wall in walls], axis=1), _PRE_DELAY)
-    size = _fast_length(count)
+    size = 1 << (count - 1).bit_length()  # which has a fast Fourier transform
     echo = np.fft.irfft(np.fft.rfft(dry, size, axis=0) * np.fft.rfft(answer, size, axis=0), size, axis=0)[:count]
     return together(dry, wet * echo)
-
-
-def _fast_length(count: int) -> int:
-    """Return the next length with a fast Fourier transform: a power of two, or 3 or 5 times one."""
-    power = 1 << (count - 1).bit_length()
-    return next(size for size in (5 * power // 8, 3 * power // 4, power) if size >= count)
 
 
 # Levels

@@ -15,7 +15,7 @@ import pygame
 from game.drawing import typeface
 from game.drawing.canvas import SHIFT, Align, Canvas
 from game.drawing.prose import lines
-from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, PALETTE, SMALL, STEP, TEXT, Colour, Palette
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, PALETTE, SMALL, STEP, TEXT, Colour, Palette
 from game.drawing.typeface import Weight
 
 # Height of a line, and of its baseline below its top, in sizes of the type.
@@ -116,7 +116,7 @@ class Cursor:
 
     def caption(self, words: str) -> None:
         """Write the words that stand over a group of rows."""
-        self.styled(words, CAPTION, MUTE, "medium")
+        self.styled(words, LABEL, MUTE, "medium")
         self.gap(STEP / 2)
 
     def aside(self, words: str) -> None:

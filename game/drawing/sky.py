@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from functools import lru_cache, partial
-from itertools import product
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import pygame
 
-from ai.environment import Doubles
 from game.drawing.canvas import Canvas, Stamp
 from game.drawing.paint import PIECE, Sheet, blocks
 from game.drawing.paint_cache import InPieces, Steps
-from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
+from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 
 _FINE: Final = 270  # lines in which the night is computed; each of their pixels fills a square of the window's
 _GLOW: Final = (150, 170, 220)  # of a bright star
@@ -25,53 +21,36 @@ class NightSky:
     """Still night sky. Its picture without stars is shared by all screens with the same glow."""
 
     def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
-        self._page = rng.random((stars, 2)) * VIEW_SIZE
-        self._brightness = rng.random(stars) ** 4
+        self._places, self._brightness = rng.random((stars, 2)), rng.random(stars) ** 4
         self._ember = ember
         self._size = (0, 0)  # of the window for which the stars were painted, in pixels
-        self._stars: list[_Star]
+        self._dots: list[Stamp] = []
+        self._glows: list[Stamp] = []
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the sky over the whole view."""
         canvas = canvas.whole
         surface, size = canvas.surface, canvas.surface.get_size()
         if size != self._size:
-            self._size = size
-            places = _spread(self._page, canvas.view).tolist()
-            self._stars = [self._star(canvas, number, place) for number, place in enumerate(places)]
+            self._size, self._dots, self._glows = size, [], []
+            for place, brightness in zip(self._places.tolist(), self._brightness.tolist(), strict=True):
+                self._paint(canvas, place, brightness)
         surface.blit(_night(size, self._ember).picture, (0, 0))
-        surface.fblits([star.dot for star in self._stars])
-        surface.fblits([star.glow for star in self._stars if star.glow], pygame.BLEND_RGB_ADD)
+        surface.fblits(self._dots)
+        surface.fblits(self._glows, pygame.BLEND_RGB_ADD)
 
-    def _star(self, canvas: Canvas, number: int, place: Sequence[float]) -> _Star:
-        """Paint the star of a number at a place in points; it fades towards the horizon."""
-        x, y = place
-        brightness = float(self._brightness[number % len(self._brightness)])
-        fade = min(max(1 - (y - canvas.view.top) / canvas.view.height, 0.0), 1.0)
-        level = (0.25 + 0.75 * brightness) * fade
+    def _paint(self, canvas: Canvas, place: tuple[float, float], brightness: float) -> None:
+        """Paint a star at a place in shares of the view; it fades towards the horizon, and a bright one glows."""
+        view, level = canvas.view, (0.25 + 0.75 * brightness) * (1 - place[1])
+        centre = view.left + place[0] * view.width, view.top + place[1] * view.height
         shade = 120 + round(120 * brightness)
-        picture, corner = canvas.stamp("circle", (x, y), 0.5 + 0.7 * brightness, (shade, shade, min(255, shade + 12)))
+        picture, corner = canvas.stamp("circle", centre, 0.5 + 0.7 * brightness, (shade, shade, min(255, shade + 12)))
         dot = picture.copy()
         dot.set_alpha(255)  # others may have drawn it faintly
         dot.fill((255, 255, 255, round(255 * level)), special_flags=pygame.BLEND_RGBA_MULT)
-        return _Star((dot, corner), canvas.light((x, y), 9, _GLOW, 0.35 * level) if brightness > 0.75 else None)
-
-
-class _Star(NamedTuple):
-    """A star's dot, and if it is bright its glow, each with the corner where it is drawn, in pixels."""
-
-    dot: Stamp
-    glow: Stamp | None
-
-
-def _spread(places: Doubles, view: pygame.FRect) -> Doubles:
-    """Return the places of stars on a page, (n, 2), and copies of it side by side as far as the view reaches.
-
-    Those of the page come first, and every copy has as many, in the same order.
-    """
-    across, down = (math.ceil(-start / length) for start, length in zip(view.topleft, VIEW_SIZE, strict=True))
-    pages = sorted(product(range(-across, across + 1), range(-down, down + 1)), key=lambda page: page != (0, 0))
-    return np.concatenate([places + np.multiply(page, VIEW_SIZE) for page in pages])
+        self._dots.append((dot, corner))
+        if brightness > 0.75 and (glow := canvas.light(centre, 9, _GLOW, 0.35 * level)):
+            self._glows.append(glow)
 
 
 @lru_cache(maxsize=4)

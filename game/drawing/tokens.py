@@ -31,7 +31,6 @@ TITLE: Final = 22.0
 TEXT: Final = 15.0
 SMALL: Final = 12.5
 LABEL: Final = 12.0  # the least size
-CAPTION: Final = 12.0
 
 # Factors by which text is enlarged, by the setting's name.
 TEXT_SIZES: Final = {"normal": 1.0, "large": 1.3, "largest": 1.6}

@@ -252,13 +252,6 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
     ]
 
 
-def open_letters(letters: str, size: float, weight: Weight, scale: float) -> None:
-    """Load letters of a size in points, as the first text with them would."""
-    font = _font(round(size * scale, 2), weight)
-    font.size(letters)
-    font.render(letters, True, _INK, (0, 0, 0))
-
-
 def forget() -> None:
     """Clear the cache of rendered strings, after a change of the window's size or of the language; fonts stay open."""
     caches = numbers, reach, digit_width, render, _covered, fitting, span, digits, line

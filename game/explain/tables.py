@@ -9,7 +9,7 @@ from typing import Final
 
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.paint import mix
-from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, SMALL, STEP, TITLE
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, STEP, TITLE
 
 _BAR: Final = 2.5  # height of a bar
 _APART: Final = 18.0  # points between two columns of a table
@@ -36,7 +36,7 @@ def table(head: Sequence[str], lines: Callable[[], Sequence[Line]]) -> Callable[
     """Return what writes a table: names on the left, figures in columns at the right; `head` may be empty."""
 
     def write(cursor: Cursor) -> None:
-        small, label, shown = cursor.in_style(SMALL), cursor.in_style(CAPTION, MUTE), lines()
+        small, label, shown = cursor.in_style(SMALL), cursor.in_style(LABEL, MUTE), lines()
         widths = [
             max(
                 label.measured(head[place]) if head else 0.0,
@@ -72,11 +72,6 @@ def _write_line(cursor: Cursor, line: Line, widths: Sequence[float]) -> None:
         cursor.canvas.line((cursor.left, cursor.y), (cursor.right, cursor.y), LINE)
         if line.what:
             cursor.canvas.explain((cursor.left, top, cursor.width, cursor.y - top), line.what, partial(str, line.now))
-
-
-def from_left(share: float) -> tuple[float, float]:
-    """Return where the bar of a share begins and ends; the smallest can be seen, too."""
-    return 0.0, max(share, 0.02)
 
 
 def from_zero(value: float, low: float, high: float) -> tuple[float, float]:
@@ -116,7 +111,7 @@ def formula(parts: Callable[[], Sequence[Part]]) -> Callable[[Cursor], None]:
     """Return what writes a formula, on as many lines as it needs."""
 
     def write(cursor: Cursor) -> None:
-        figures, words = cursor.in_style(TITLE - 2), cursor.in_style(CAPTION, MUTE)
+        figures, words = cursor.in_style(TITLE - 2), cursor.in_style(LABEL, MUTE)
         x, high = cursor.left, LEADING * (figures.size + words.size) + STEP
         for part in parts():
             wide = max(figures.measured(part.figure, tabular=True), words.measured(part.word) if part.word else 0.0)

@@ -91,8 +91,6 @@ _CHANGEABLE: Final[Mapping[Meaning, tuple[tuple[int, ...], tuple[int, ...]]]] = 
 }
 FIXED_KEYS, FIXED_BUTTONS = ({meaning: codes[device] for meaning, codes in _FIXED.items()} for device in (0, 1))
 KEYS, BUTTONS = ({meaning: codes[device] for meaning, codes in _CHANGEABLE.items()} for device in (0, 1))
-# Meanings that give way: a key bound elsewhere is taken from them, also by settings saved before they existed.
-GIVE_WAY: Final = frozenset({Held.FINE, Command.MUTE})
 # Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {
     pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT
@@ -178,57 +176,20 @@ class Bindings:
             return True
         return code not in device.taken and not any(code in codes for codes in device.fixed.values())
 
-    def keyless(self, meaning: Meaning, code: int) -> Meaning | None:
-        """Return the meaning that would lose its last key if `code` were bound to `meaning`; None if there is none."""
-        owner = self._owner(meaning, code)
-        if owner is None or owner in self.device.fixed or owner in GIVE_WAY or self._left(owner, meaning, code):
-            return None
-        return owner
+    def only_key_of(self, code: int) -> Meaning | None:
+        """Return the meaning that has no other key than this."""
+        return next((meaning for meaning, codes in self.table.items() if codes == (code,)), None)
 
-    def bind(self, meaning: Meaning, code: int) -> Meaning | None:
-        """Bind a key to a meaning, and unbind it from any other; return the meaning that lost it, if any.
-
-        A meaning that loses its only key gets the keys that `meaning` gives up, as far as allowed. Raises ValueError
-        if none of them is allowed: no meaning is ever left without a key.
-        """
-        if (poor := self.keyless(meaning, code)) is not None:
-            raise ValueError(f"{poor.name} would be left without any key")
-        loser = self._owner(meaning, code)
-        if loser is not None:
-            self.table[loser] = self._left(loser, meaning, code)
+    def bind(self, meaning: Meaning, code: int) -> None:
+        """Bind a key to a meaning, and unbind it from any other."""
+        self.table = {other: _without(codes, {code}) for other, codes in self.table.items()}
         self.table[meaning] = (code,)
         self._index()
-        return loser
-
-    def _owner(self, meaning: Meaning, code: int) -> Meaning | None:
-        """Return the other changeable meaning that has that key, if any."""
-        return next((other for other, codes in self.table.items() if code in codes and other is not meaning), None)
-
-    def _left(self, loser: Meaning, meaning: Meaning, code: int) -> tuple[int, ...]:
-        """Return the keys of `loser` once `meaning` has taken one from it, and given up its own."""
-        left = _without(self.table[loser], {code})
-        if loser in GIVE_WAY:
-            return left
-        return left or tuple(each for each in self.table[meaning] if each != code and self.may(loser, each))
 
     def reset(self) -> None:
         """Restore the defaults."""
         self.table = dict(self.device.standard)
         self._index()
-
-    def _restore(self, meanings: list[Meaning]) -> None:
-        """Reset meanings, and each one left without a key by that; at most once each, since their defaults differ."""
-        for meaning in meanings:
-            own = self.device.standard[meaning]
-            for other, codes in self.table.items():
-                if other is not meaning and not set(codes).isdisjoint(own):
-                    self.table[other] = _without(codes, own)
-                    meanings += [other] * self._lacks(other)
-            self.table[meaning] = own
-
-    def _lacks(self, meaning: Meaning) -> bool:
-        """Whether a meaning with a default key has no key left."""
-        return meaning not in GIVE_WAY and bool(self.device.standard[meaning]) and not self.codes(meaning)
 
     def to_dict(self) -> dict[str, list[str]]:
         """Return the changes from the defaults, as names for the settings file."""
@@ -240,18 +201,20 @@ class Bindings:
         }
 
     def follow(self, saved: Mapping[str, Any]) -> None:
-        """Apply what `to_dict` returned; invalid entries are ignored, and the first owner of a key keeps it."""
-        self.table, taken = dict(self.device.standard), set[int]()
-        changed = [meaning for meaning in self.table if isinstance(saved.get(meaning.name.lower()), list)]
-        for meaning in changed:
-            codes = [self._code(word) for word in saved[meaning.name.lower()]]
-            fit = dict.fromkeys(code for code in codes if code is not None and self.may(meaning, code))
-            self.table[meaning] = _without(fit, taken)
+        """Apply what `to_dict` returned; invalid entries are ignored, and the first owner of a key keeps it.
+
+        A default key that the player has bound to something else is not the default's any more.
+        """
+        standard, taken = self.device.standard, set[int]()
+        chosen = {meaning: self._chosen(meaning, saved.get(meaning.name.lower())) for meaning in standard}
+        for meaning in sorted(standard, key=lambda meaning: not chosen[meaning]):
+            self.table[meaning] = _without(chosen[meaning], taken) or _without(standard[meaning], taken)
             taken.update(self.table[meaning])
-        for meaning in self.table.keys() - changed:
-            self.table[meaning] = _without(self.table[meaning], taken)
-        self._restore([meaning for meaning in self.table if self._lacks(meaning)])
         self._index()
+
+    def _chosen(self, meaning: Meaning, words: object) -> list[int]:
+        codes = map(self._code, words if isinstance(words, list) else ())
+        return list(dict.fromkeys(code for code in codes if code is not None and self.may(meaning, code)))
 
     def _code(self, word: object) -> int | None:
         if not isinstance(word, str):

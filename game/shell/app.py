@@ -18,7 +18,7 @@ from game.core import texts
 from game.core.clock import FixedStep
 from game.core.scene import Push, Route
 from game.core.settings import SettingsWriter
-from game.drawing import letters, typeface
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import paint_on
 from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
@@ -170,13 +170,11 @@ class App:
         self.canvas.attach(self.window.surface)
         self._attached_size = self.window.size
         self._frame_rate = self.window.frame_rate
-        letters.begin(self.canvas.type)
 
     def _look(self) -> None:
         """Apply the player's palette and size of text."""
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
         self.canvas.zoom = TEXT_SIZES.get(self.context.settings.text_size, 1.0)
-        letters.begin(self.canvas.type)
 
     def apply_settings(self) -> None:
         """Apply the settings to the window and the sound, and save them."""

@@ -1,17 +1,14 @@
-"""The system's clipboard, and a file in its place where there is none."""
+"""The system's clipboard."""
 
 from __future__ import annotations
 
-from datetime import datetime
 from typing import Final
 
 import pygame
 
-from ai.files import free_path, write_text
 from game.core import texts
 from game.ui.context import Context
 
-FOLDER: Final = "codes"  # in the player's folder, where there is no clipboard
 _LONGEST: Final = 1_000_000  # characters of what is pasted
 
 
@@ -24,18 +21,9 @@ def pasted() -> str:
 
 
 def give(context: Context, text: str, message: str) -> None:
-    """Copy a text and say so in the words `message`; without a clipboard, write it to a file and say where that is."""
+    """Copy a text and say so in the words `message`, or that there is no clipboard."""
     try:
         pygame.scrap.put_text(text)
     except pygame.error:
-        message = _written(context, text)
+        message = texts.CODE_NO_CLIPBOARD
     context.note(message)
-
-
-def _written(context: Context, text: str) -> str:
-    path = free_path(context.user_dir / FOLDER, f"{datetime.now():%Y-%m-%d %H.%M.%S}", ".txt")
-    try:
-        write_text(path, text + "\n", flush=False)
-    except OSError as error:
-        return texts.CODE_NOT_WRITTEN.format(reason=error.strerror or error)
-    return texts.CODE_NO_CLIPBOARD.format(path=path)

@@ -25,7 +25,7 @@ class EntryRow(RowWidget):
 
     The first letter takes the place of what stands there. Up, down and Tab leave it and keep the text. `accept` is
     given the text, stripped and never empty. `fits` removes from a text all that is not allowed; `limit` is the largest
-    number of letters.
+    number of letters. `composed` are letters under way, of a writing in which several keys make one.
     """
 
     spells = True
@@ -40,7 +40,7 @@ class EntryRow(RowWidget):
     ) -> None:
         super().__init__(NOWHERE, "")
         self._accept, self._cancelled, self._limit, self._fits = accept, cancel, limit, fits
-        self.text = self._before = text
+        self.text, self._before, self.composed = text, text, ""
         self.caret = len(text)
         self._whole = self._fresh = False  # whether the next letter takes the place of all; or is that of the first key
 
@@ -61,9 +61,14 @@ class EntryRow(RowWidget):
         if not self.typing:
             return False
         key = event.key if event.type == pygame.KEYDOWN else None
-        if event.type == pygame.TEXTINPUT:
+        if event.type == pygame.TEXTEDITING:
+            self.composed = self._fits(event.text)
+        elif event.type == pygame.TEXTINPUT:
+            self.composed = ""
             if not self._fresh:
                 self._put(event.text)
+        elif self.composed:
+            return True  # a key that belongs to the composition
         elif copies_or_pastes(event) == "v":
             if text := pasted():
                 self._put(text)
@@ -113,9 +118,11 @@ class EntryRow(RowWidget):
         super().ease(at_once)
         self._fresh = False
         self.typing = self.typing and self.focused
+        if not self.typing:
+            self.composed = ""
 
     def write(self, cursor: Cursor) -> None:
-        box, before = cursor.take(_HEIGHT), cursor.measured(self.text[: self.caret])
+        box, before = cursor.take(_HEIGHT), cursor.measured(self.text[: self.caret] + self.composed)
         left = box.left - max(before + 2 - box.width, 0.0)  # the caret is in sight
         if canvas := cursor.canvas:
             with canvas.clipped(box.inflate(8, 8)):
@@ -125,7 +132,9 @@ class EntryRow(RowWidget):
         y, baseline = box.bottom - 1, box.bottom - 9
         if self.typing and self._whole:
             canvas.rounded((left - 3, baseline - TEXT, caret - left + 6, 1.4 * TEXT), 3, HUMAN, 0.2)
-        canvas.text(self.text, (left, baseline))
+        canvas.text(self.text[: self.caret] + self.composed + self.text[self.caret :], (left, baseline))
+        if self.composed:
+            canvas.line((caret - canvas.text_width(self.composed), y - 4), (caret, y - 4), HUMAN)
         if self.typing:
             canvas.line((caret + 0.5, baseline - 0.95 * TEXT), (caret + 0.5, baseline + 0.3 * TEXT), HUMAN, 1.5)
         canvas.line((box.left, y), (box.right, y), FAINT, 1)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Final
 
 import pygame
@@ -15,7 +13,7 @@ from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.widget import EASE, NOWHERE, OnPress, RowWidget, mix
+from game.ui.widget import NOWHERE, OnPress, RowWidget, mix
 
 Words = str | Callable[[], str]  # a function for words that change
 _SWITCH: Final = (32.0, 16.0)
@@ -111,7 +109,6 @@ class ToggleRow(RowWidget):
     def __init__(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> None:
         super().__init__(NOWHERE, label)
         self.value, self._on_change, self._aside = value, change, aside
-        self._slid = float(value)
 
     def press(self) -> None:
         self.value = not self.value
@@ -120,11 +117,6 @@ class ToggleRow(RowWidget):
     def advance(self) -> None:
         self.press()
 
-    def ease(self, at_once: bool) -> None:
-        super().ease(at_once)
-        target = float(self.value)
-        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
-
     def write(self, cursor: Cursor) -> None:
         words = replace(cursor, width=cursor.width - _SWITCH[0] - 2 * STEP)
         words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
@@ -132,9 +124,9 @@ class ToggleRow(RowWidget):
             top = cursor.y + LEADING * cursor.size / 2 - _SWITCH[1] / 2
             box = pygame.FRect(cursor.right - _SWITCH[0], top, *_SWITCH)
             half = box.height / 2
-            cursor.canvas.pill(box, mix(FAINT, NET, self._slid))
-            knob = (box.left + half + (box.width - box.height) * self._slid, box.centery)
-            cursor.canvas.dot(knob, half - 2.5, INK)
+            cursor.canvas.pill(box, NET if self.value else FAINT)
+            knob = box.right - half if self.value else box.left + half
+            cursor.canvas.dot((knob, box.centery), half - 2.5, INK)
         words.text(self.label)
         if self._aside:
             words.gap(2)
@@ -143,10 +135,7 @@ class ToggleRow(RowWidget):
 
 
 class SliderRow(RowWidget):
-    """Slider: its label on the left or above, the figure at the right end, an explanation below.
-
-    `ticks` are values that have a name; it stops at them as well as after each `step`.
-    """
+    """Slider: its label on the left or above, the figure at the right end, an explanation below."""
 
     by_arrows = True
     colour: Colour = NET
@@ -161,35 +150,27 @@ class SliderRow(RowWidget):
         step: float,
         figure: Callable[[float], str],
         aside: str = "",
-        ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
         super().__init__(NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
-        self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
+        self._step, self._figure, self._aside = step, figure, aside
         self._track = (0.0, 1.0)
 
     @property
     def fraction(self) -> float:
-        return self._fraction_of(self.value)
-
-    def _fraction_of(self, value: float) -> float:
         low, high = self.limits
-        return min(max((value - low) / (high - low), 0.0), 1.0)
+        return min(max((self.value - low) / (high - low), 0.0), 1.0)
 
     def set(self, value: float) -> None:
-        """Set the value, clipped to the limits and rounded to a step or a tick."""
+        """Set the value, clipped to the limits and rounded to a step."""
         low, high = self.limits
-        stops = low + round((value - low) / self._step) * self._step, *self._ticks
-        value = min(max(min(stops, key=lambda stop: abs(stop - value)), low), high)
+        value = min(max(low + round((value - low) / self._step) * self._step, low), high)
         if value != self.value:
             self.value = value
             self._on_change(value)
 
     def shift(self, direction: int) -> bool:
-        low, value = self.limits[0], self.value
-        steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
-        stops = low + direction * steps * self._step, *self._ticks
-        self.set(min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value)))
+        self.set(self.value + direction * self._step)
         return True
 
     def advance(self) -> None:
@@ -214,30 +195,14 @@ class SliderRow(RowWidget):
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
             canvas.bar((left, middle - 1, right - left, 2), self.fraction, self.colour)
-            for value in self._ticks:
-                x = left + self._fraction_of(value) * (right - left)
-                canvas.line((x, middle - 5), (x, middle + 5), MUTE)
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
             canvas.text(self._figure(self.value), place, colour=self.colour, align="right", tabular=True)
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size
-        if self._ticks:
-            self._name_ticks(cursor.in_style(SMALL, MUTE), left, right)
-            cursor.gap(LEADING * SMALL)
         if self._aside:
             cursor.aside(self._aside)
-
-    def _name_ticks(self, cursor: Cursor, left: float, right: float) -> None:
-        """Write the name of each tick below it, or beside the one before."""
-        free = left
-        for value, name in self._ticks.items():
-            wide = cursor.measured(name)
-            free = max(free, left + self._fraction_of(value) * (right - left) - wide / 2)
-            if canvas := cursor.canvas:
-                canvas.text(name, (free, cursor.baseline), size=cursor.size, colour=cursor.colour)
-            free += wide + STEP
 
 
 class ChoiceRow(RowWidget):

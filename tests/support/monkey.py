@@ -263,6 +263,8 @@ class Monkey:
 
     def _type(self) -> str:
         text = self._one(_TEXTS)
+        if self.rng.random() < 0.2:
+            self._post(pygame.TEXTEDITING, text=text, start=0, length=len(text))
         self._post(pygame.TEXTINPUT, text=text)
         return f"text {text[:10]!r}"
 

@@ -18,7 +18,7 @@ from game.digits.kept import classifier_in, mnist_test
 from game.digits.pictures import GREY, SIGNED, picture
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import CAPTION, INK, MUTE, NET, SMALL
+from game.drawing.tokens import INK, LABEL, MUTE, NET, SMALL
 from game.explain.figures import percent
 from game.scenes.learn.chapter import Chapter
 from game.ui.context import Context
@@ -161,7 +161,7 @@ class BackwardsChapter(Chapter):
             blamed = self.model.reached >= 4 - stage
             shows = (stage, blamed, self.model.steps, self.model.chosen)
             self._cache.draw(canvas, area, shows, partial(self._paint, stage, blamed, columns))
-            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=CAPTION, colour=MUTE)
+            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=LABEL, colour=MUTE)
         for digit in range(DIGITS):
             self._draw_answer(canvas, _spot(box, len(_BOXES), digit), digit)
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import pygame
 
@@ -17,20 +16,12 @@ from game.ui.context import Context
 from game.ui.panel import Column
 
 
-@dataclass(frozen=True)
-class Code:
-    """A function of ours whose line does what the chapter is about.
-
-    Attributes:
-        function: the function whose source is shown.
-        line: what the line is found by, which is lit.
-        note: what stands beside it: numbers of the case at hand.
-
-    """
+class Code(NamedTuple):
+    """A function of ours whose line does what the chapter is about."""
 
     function: Callable[..., Any]
-    line: Mark
-    note: str
+    line: Mark  # what the line is found by, which is lit
+    note: str  # what stands beside it: numbers of the case at hand
 
 
 class Model(Protocol):

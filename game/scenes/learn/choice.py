@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -22,13 +21,13 @@ from game.core.catalogue import capital
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import HUMAN, INK, NET, NIGHT1, SMALL
+from game.drawing.tokens import INK, NET, NIGHT1, SMALL
 from game.explain.figures import points
-from game.explain.tables import Line, from_zero, table
+from game.explain.tables import Line, table
 from game.flight import networks
 from game.flight.networks import DECISION_STEPS
 from game.scenes.learn.chapter import Chapter
-from game.scenes.learn.pictures import DrawnLander, draw_ground
+from game.scenes.learn.pictures import draw_ground, draw_lander
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.world.camera import View
@@ -43,7 +42,6 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 _METRES, _BELOW, _ABOVE = 52.0, 1.2, 2.0  # metres: across the picture at least, below the ground, above the lander
-_BAR, _ROOM = 50.0, 1.5  # the scale of the six values: in steps of so many points, so many times the largest
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
 
 
@@ -147,12 +145,10 @@ class ChoiceChapter(Chapter):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self.model = Moment(DeepQAgent.load(context.models_dir / networks.LANDER / networks.DEFAULT))
-        self._lander = DrawnLander(self.model.env)
 
     def turn(self) -> None:
         """Go to the next moment."""
         self.model.freeze((self.model.number + 1) % len(MOMENTS))
-        self._lander = DrawnLander(self.model.env)
         self.tried, self.changed = False, True
 
     def controls(self, column: Column) -> None:
@@ -164,12 +160,11 @@ class ChoiceChapter(Chapter):
     def begin_with(self, action: int) -> None:
         """Let a flight begin with an action."""
         self.model.begin_with(action)
-        self._lander, self.changed = DrawnLander(self.model.env), True
+        self.changed = True
 
     def update(self) -> None:
         if self.model.running:
             super().update()
-            self._lander.follow()
 
     def why(self) -> str:
         return " ".join(
@@ -185,16 +180,11 @@ class ChoiceChapter(Chapter):
         column.add(table(("", *texts.LEARN_CHOICE_HEAD), self._lines))
 
     def _lines(self) -> Sequence[Line]:
-        """Return each action with its value, and what came of it; bars begin at 0, on one scale for the moment."""
-        came = {action: each.points for action, each in self.model.results.items()}
-        shown = [*self.model.values.tolist(), *came.values()]
-        high, lines = _BAR * math.ceil(_ROOM * max(float(np.abs(self.model.values).max()), 1.0) / _BAR), list[Line]()
-        low = -high if min(shown) < 0 else 0.0
-        for action, value in enumerate(self.model.values.tolist()):
-            brought = points(came[action], 1) if action in came else ""
-            bars = [from_zero(each, low, high) for each in (value, came.get(action, 0.0))]
-            cells = (texts.said(ACTION_NAMES[action]), points(value, 1), brought)
-            lines.append(Line(cells, lit=action == self.model.best, bars=bars))
+        """Return each action with its value, and what came of it."""
+        model, lines = self.model, list[Line]()
+        for action, value in enumerate(model.values.tolist()):
+            brought = points(model.results[action].points, 1) if action in model.results else ""
+            lines.append(Line((texts.said(ACTION_NAMES[action]), points(value, 1), brought), lit=action == model.best))
         return lines
 
     def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
@@ -205,8 +195,4 @@ class ChoiceChapter(Chapter):
             draw_ground(canvas, box, view)
             for a, b in pairwise(view.points(self.model.path).tolist()):
                 canvas.line(a, b, mix(NIGHT1, NET, 0.6), 1.5)
-            self._lander.draw(canvas, view)
-            if self.model.first is None:
-                start = self.model.env.position[0]
-                a, b = view.points([start, start + self.model.env.velocity[0]]).tolist()
-                canvas.line(a, b, HUMAN, 2)
+            draw_lander(canvas, view, self.model.env)

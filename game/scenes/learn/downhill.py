@@ -16,7 +16,7 @@ from ai.nn import SGD, Array, CostFunctions, DivergenceError, FullyConnectedLaye
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import CAPTION, HUMAN, MUTE, NET, SMALL, Colour
+from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, Colour
 from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.ui.context import Context
@@ -167,8 +167,8 @@ class DownhillChapter(Chapter):
             ends = [(weight + side * span, cost + side * span * slope) for side in (-1, 1)]
             _draw_way(canvas, box, ends, MUTE)
         up, across = texts.LEARN_DOWNHILL_AXES
-        canvas.text(up, (box.left + 8, box.top + 16), size=CAPTION, colour=MUTE)
-        canvas.text(across, (box.right - 8, box.bottom - 8), size=CAPTION, colour=MUTE, align="right")
+        canvas.text(up, (box.left + 8, box.top + 16), size=LABEL, colour=MUTE)
+        canvas.text(across, (box.right - 8, box.bottom - 8), size=LABEL, colour=MUTE, align="right")
 
 
 def _draw_way(canvas: Canvas, box: pygame.FRect, points: Sequence[Point], colour: Colour) -> None:

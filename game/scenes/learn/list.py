@@ -38,16 +38,12 @@ class LearnScene(PanelScene):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._choose_first()
-        self.build()
+        self.enter()
         self.form.focus(self.form.widgets[1])  # the list
 
-    def _choose_first(self) -> None:
+    def enter(self) -> None:
         """Choose the first chapter that is not done."""
         self.chosen = next((key for key in PATH if not is_done(self.context.settings, key)), FIRST)
-
-    def enter(self) -> None:
-        self._choose_first()
         self.build()
 
     def actions(self) -> Table:

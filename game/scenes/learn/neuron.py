@@ -19,7 +19,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NET, SMALL
 from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
-from game.scenes.learn.pictures import DrawnLander
+from game.scenes.learn.pictures import draw_lander
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.world.camera import View
@@ -144,7 +144,6 @@ class NeuronChapter(Chapter):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self.model = Steering()
-        self._lander = DrawnLander(self.model.env)
 
     def controls(self, column: Column) -> None:
         for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
@@ -158,10 +157,6 @@ class NeuronChapter(Chapter):
         for number, weight in enumerate(HINT):
             self.model.set(number, weight)
         self.changed = True
-
-    def update(self) -> None:
-        super().update()
-        self._lander.follow()
 
     def why(self) -> str:
         seconds, weights = self.model.best
@@ -193,7 +188,7 @@ class NeuronChapter(Chapter):
             ((x, y),) = view.points([(0.0, _HEIGHT)]).tolist()
             canvas.line((world.left, y), (world.right, y), LINE)
             canvas.line((x, world.top), (x, world.bottom), LINE)
-            self._lander.draw(canvas, view)
+            draw_lander(canvas, view, self.model.env)
         there = self.model.seconds >= GOAL
         words = texts.LEARN_NEURON_FLIGHT[self.model.end or ("there" if there else "flies")].format(
             seconds=self.model.seconds

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Mapping
-from typing import Final, NamedTuple
+from typing import Final
 
 from game.core import texts
 from game.core.assets import MICROLANDER
@@ -16,26 +16,22 @@ from game.ui.context import Context
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 
-_PART: Final = re.compile(r" *# (\d+)\. .+: (\S+)$")  # its number, and its module
+_PART: Final = re.compile(r" *# \d+\. .+: (\S+)$")  # with its module
 _SHARES, _LEAST, _APART = (1.0, 3.2), 200.0, 36.0  # of the columns of parts and of code
 _AROUND, _PITCH = 180.0, 28.0  # points above and below the list, and of a row of it
 
 
-class Part(NamedTuple):
-    """One part of the file, and the module that it grew up to be."""
+def parts() -> list[Source]:
+    """Return the parts of the file, in their order, each named by the module that it grew up to be.
 
-    source: Source
-    grown_up: str
-
-
-def parts() -> list[Part]:
-    """Return the parts of the file, in their order: each begins with a numbered comment."""
+    Each begins with a numbered comment.
+    """
     lines = [*enumerate(MICROLANDER.read_text(encoding="utf-8").splitlines(), 1)]
     begins = [(number, found) for number, line in lines if (found := _PART.fullmatch(line))]
     ends = [number for number, _ in begins[1:]] + [len(lines) + 1]
     path = f"examples/{MICROLANDER.name}"
     return [
-        Part(Source(path, found[1], tuple(lines[number - 1 : end - 1]), ast.Module([], [])), found[2])
+        Source(path, found[1], tuple(lines[number - 1 : end - 1]), ast.Module([], []))
         for (number, found), end in zip(begins, ends, strict=True)
     ]
 
@@ -64,7 +60,7 @@ class OneFileScene(PanelScene):
             on_choose=self._choose, pitch=_PITCH,
         )  # fmt: skip
         right.title(lambda: texts.ONE_FILE_PARTS[self.chosen], TITLE + 4)
-        right.aside(lambda: texts.ONE_FILE_GROWN.format(place=self._parts[self.chosen].grown_up))
+        right.aside(lambda: texts.ONE_FILE_GROWN.format(place=self._parts[self.chosen].name))
         right.gap(8)
         add_listing(right, self._height, self._shown)
 
@@ -72,7 +68,7 @@ class OneFileScene(PanelScene):
         self.chosen = index
 
     def _shown(self) -> tuple[Source, int | None, Mapping[int, str]]:
-        return self._parts[self.chosen].source, None, {}
+        return self._parts[self.chosen], None, {}
 
     def _height(self, width: float) -> float:
-        return listing_height(self._parts[self.chosen].source, width)
+        return listing_height(self._parts[self.chosen], width)

@@ -11,15 +11,15 @@ import pygame
 
 from ai.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, LanderEnv
+from engine import DT
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import CAPTION, FAINT, LINE, MUTE, Colour
+from game.drawing.tokens import FAINT, LABEL, LINE, MUTE, Colour
 from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.landscape.pad import draw_pad
 
 HEAD: Final = 1.3  # metres from a lander's middle to above its antenna
-_IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _MOST: Final = 150  # points of a curve that are drawn
 
 
@@ -42,22 +42,12 @@ def draw_landers(
         canvas.marker("triangle", (x, box.top + 8), 8, MUTE)
 
 
-class DrawnLander:
-    """Picture of a single lander in its environment; call `follow` after every physics step."""
-
-    def __init__(self, env: LanderEnv) -> None:
-        self._env, self._thrust, self._flicker = env, np.zeros(3), 0
-
-    def follow(self) -> None:
-        """Ease the lander's flames."""
-        fired = int(self._env.fired[0])
-        wanted = np.array([fired >= 3, fired % 3 == 2, fired % 3 == 1], float)
-        self._thrust += _IGNITE * (wanted - self._thrust)
-        self._flicker += 1
-
-    def draw(self, canvas: Canvas, view: View) -> None:
-        pose = np.array([*self._env.position[0], self._env.angle[0]])
-        draw_craft(canvas, view, art.LANDER, pose, self._thrust, 1.0, self._flicker)
+def draw_lander(canvas: Canvas, view: View, env: LanderEnv) -> None:
+    """Draw a single lander in its environment, with its fires."""
+    fired = int(env.fired[0])
+    thrust = np.array([fired >= 3, fired % 3 == 2, fired % 3 == 1], float)
+    pose = np.array([*env.position[0], env.angle[0]])
+    draw_craft(canvas, view, art.LANDER, pose, thrust, 1.0, round(float(env.time[0]) / DT))
 
 
 def draw_curve(canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colour, length: int) -> None:
@@ -76,4 +66,4 @@ def draw_axis(canvas: Canvas, box: pygame.FRect, ticks: Sequence[tuple[float, st
     for height, word in ticks:
         y = box.bottom - box.height * height
         canvas.line((box.left, y), (box.right, y), LINE)
-        canvas.text(word, (box.left - 6, y + 4), size=CAPTION, colour=MUTE, align="right", tabular=True)
+        canvas.text(word, (box.left - 6, y + 4), size=LABEL, colour=MUTE, align="right", tabular=True)

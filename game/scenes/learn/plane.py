@@ -20,7 +20,7 @@ from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, NIGHT0, SMALL
+from game.drawing.tokens import FAINT, INK, LABEL, MUTE, NIGHT0, SMALL
 from game.scenes.learn.chapter import Chapter
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -55,12 +55,6 @@ def network_of(units: int, seed: int) -> NeuralNetwork:
     return network
 
 
-def _places() -> Array:
-    """Return the middles (cells², 2) of the cells of the plane's picture, column by column."""
-    across, up = np.meshgrid(*[np.linspace(-1.0, 1.0, _CELLS)] * 2, indexing="ij")
-    return np.stack([across.ravel(), up.ravel()], axis=1).astype(np.float32)
-
-
 class Divided:
     """Training on points of two kinds, and what the network answers on the whole plane.
 
@@ -75,7 +69,8 @@ class Divided:
     """
 
     def __init__(self) -> None:
-        self._places = _places()
+        cells = np.linspace(-1.0, 1.0, _CELLS)  # the middles of the picture's cells, column by column
+        self._places = np.stack(np.meshgrid(cells, cells, indexing="ij"), axis=-1).reshape(-1, 2).astype(np.float32)
         self.points, self.targets = examples(0)
         self.units = self._seed = self.version = 0
         self.results: dict[int, int] = {}
@@ -166,11 +161,11 @@ class PlaneChapter(Chapter):
             canvas.marker("ring" if target > 0 else "triangle", place, 9, colour)
         left, right, below, above = texts.LEARN_PLANE_AXES
         y = plane.bottom + 17
-        canvas.text(left, (plane.left, y), size=CAPTION, colour=MUTE, room=side / 2 - 8)
-        canvas.text(right, (plane.right, y), size=CAPTION, colour=MUTE, align="right", room=side / 2 - 8)
+        canvas.text(left, (plane.left, y), size=LABEL, colour=MUTE, room=side / 2 - 8)
+        canvas.text(right, (plane.right, y), size=LABEL, colour=MUTE, align="right", room=side / 2 - 8)
         beside = pygame.FRect(plane.right + 12, plane.top, box.right - plane.right - 12, side)
         for text, y in ((above, plane.top + 12), (below, plane.bottom - 2)):
-            canvas.text(text, (beside.left, y), size=CAPTION, colour=MUTE, room=beside.width / 2)
+            canvas.text(text, (beside.left, y), size=LABEL, colour=MUTE, room=beside.width / 2)
         self._draw_network(canvas, beside)
 
     def _draw_plane(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
@@ -205,7 +200,7 @@ class PlaneChapter(Chapter):
                     canvas.line(start, end.midleft, colour, min(0.5 + abs(weight), 4.0), 0.55)
         for name, (x, y) in zip(texts.LEARN_PLANE_INPUTS, inputs, strict=True):
             canvas.dot((x, y), 5, INK)
-            canvas.text(name, (x, y - 12), size=CAPTION, colour=MUTE, align="centre", room=0.36 * box.width)
+            canvas.text(name, (x, y - 12), size=LABEL, colour=MUTE, align="centre", room=0.36 * box.width)
         for number, unit in enumerate(units):
             self._draw_plane(canvas, unit, number)
         self._draw_plane(canvas, out, -1)

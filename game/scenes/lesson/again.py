@@ -12,7 +12,7 @@ from ai.nn import NeuralNetwork, Optimizer
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, MUTE, NET, NIGHT0
+from game.drawing.tokens import FAINT, HUMAN, LABEL, MUTE, NET, NIGHT0
 from game.explain.figures import points
 from game.explain.tables import Line, from_zero, table
 from game.scenes.lesson.card import Card
@@ -91,9 +91,9 @@ class AgainCard(Card):
         ]
         y = chart.bottom - per_unit * (alone.target - low)
         canvas.line((chart.left, y), (chart.right, y), HUMAN, 1.5, 0.8)
-        beyond = -8 if way[0][1] > y else 8 + CAPTION  # on the side from which the way does not come
-        canvas.text(texts.LESSON_TARGET, (chart.right, y + beyond), size=CAPTION, colour=HUMAN, align="right")
-        canvas.text(points(alone.way[0] / self._scale), (chart.left - 10, way[0][1] + 4), size=CAPTION, colour=MUTE,
+        beyond = -8 if way[0][1] > y else 8 + LABEL  # on the side from which the way does not come
+        canvas.text(texts.LESSON_TARGET, (chart.right, y + beyond), size=LABEL, colour=HUMAN, align="right")
+        canvas.text(points(alone.way[0] / self._scale), (chart.left - 10, way[0][1] + 4), size=LABEL, colour=MUTE,
                     align="right")  # fmt: skip
         for start, end in pairwise(way):
             canvas.line(start, end, mix(NIGHT0, NET, 0.7), 1.5)

@@ -73,8 +73,8 @@ class BindingCell(RowWidget):
         what = self._word(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
-        elif poor := self._bindings.keyless(self._meaning, code):
-            self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
+        elif (owner := self._bindings.only_key_of(code)) and owner is not self._meaning:
+            self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[owner.name]))
         else:
             self.stop()
             self._bindings.bind(self._meaning, code)

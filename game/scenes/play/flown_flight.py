@@ -124,7 +124,7 @@ class FlownFlight:
         self.clear, self._earth = ClearArea(), EARTH
         self.scenery = Scenery(self.flight, calm, ClearArea(head=_WAITING))
         self.pace = TimeScale()
-        self._heard = FlightSound(context.sound, self.flight.env, self.pace)
+        self._heard = FlightSound(context.sound, self.flight.env)
         self.path = FlownPath(self.flight)
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)

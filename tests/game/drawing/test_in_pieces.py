@@ -7,7 +7,6 @@ import pygame
 import pytest
 
 from ai.lander.descent import LegStart, leg_of
-from game.drawing import letters
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE
 from game.drawing.paint_cache import A_FRAME, PaintCache, idle, paint_on, painted, spread
@@ -148,16 +147,6 @@ def test_a_frame_that_has_painted_a_rough_picture_paints_no_more(in_pieces: None
     assert painted() - rough > A_FRAME
     assert paint_on() == 0  # later, in frames of their own
     assert paint_on() > 0
-
-
-def test_letters_are_loaded_a_few_at_a_time_and_anew_for_another_size(in_pieces: None):
-    for scale in (0.83, 0.91):
-        letters.begin(scale)
-        frames = finish()
-        assert len(frames) > 5
-        assert max(frames) <= MOST
-        letters.begin(scale)
-        assert idle(), "they are there"
 
 
 # Pictures that are kept: painted when what they show changes, and only then.

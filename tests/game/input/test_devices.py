@@ -164,7 +164,7 @@ def test_one_switch_changes_a_choice_and_a_trembling_hand_presses_once(open_game
 # Text
 
 
-def test_letters_are_composed_only_while_a_line_takes_them(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+def test_letters_are_composed_only_while_a_line_takes_them(open_game: Open, monkeypatch: pytest.MonkeyPatch, written):
     calls = list[str]()
     for name in ("start_text_input", "stop_text_input"):
         monkeypatch.setattr(pygame.key, name, lambda name=name: calls.append(name))
@@ -184,8 +184,14 @@ def test_letters_are_composed_only_while_a_line_takes_them(open_game: Open, monk
     driver.frames(1)
     assert calls[1:] == ["start_text_input"]
     entry = driver.top.entry
+    driver.post(pygame.TEXTEDITING, text="にh", start=0, length=2)
+    assert "oldにh" in written
+    assert entry.text == "old"
+    driver.key(pygame.K_BACKSPACE)  # belongs to the composition
+    assert entry.text == "old"
     driver.post(pygame.TEXTINPUT, text="日")
     assert entry.text == "日"
+    assert not entry.composed
     driver.key(pygame.K_RETURN)
     driver.frames(1)
     assert calls[2:] == ["stop_text_input"]

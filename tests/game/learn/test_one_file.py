@@ -15,7 +15,7 @@ Open = Callable[..., Driver]
 
 def test_the_parts_are_the_file_from_its_first_part_on():
     lines = MICROLANDER.read_text().splitlines()
-    shown = dict(line for part in parts() for line in part.source.lines)
+    shown = dict(line for part in parts() for line in part.lines)
     first = min(shown)
     assert not [line for line in lines[: first - 1] if line.startswith(("def ", "class "))]
     assert [shown[number] for number in range(first, len(lines) + 1)] == lines[first - 1 :]
@@ -32,6 +32,6 @@ def test_learn_begins_with_it_and_each_part_has_its_lines(open_game: Open, writt
         assert driver.top.chosen == number
         driver.frames(3)
         text = "".join("".join(written).split())
-        assert all("".join(line.split()) in text for _, line in part.source.lines[:6])
-        assert part.grown_up in " ".join(written)
+        assert all("".join(line.split()) in text for _, line in part.lines[:6])
+        assert part.name in " ".join(written)
         driver.key(pygame.K_DOWN)

@@ -115,7 +115,7 @@ def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(ga
     game.key(pygame.K_ESCAPE)
     crash(game)
     assert scene(game).flown.pace.slow is not reduced
-    assert [key for key in heard if "crash" in key] == ["crash" if reduced else "slow_crash"]
+    assert [key for key in heard if "crash" in key] == ["crash"]
 
 
 def test_contact_light_is_announced_when_both_feet_are_down_and_then_no_more(game: Driver, written: list[str]):

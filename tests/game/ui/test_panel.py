@@ -10,7 +10,7 @@ from game.core.scene import Pop
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.prose import lines
-from game.drawing.tokens import CAPTION, TEXT, TEXT_SIZES, VIEW_SIZE
+from game.drawing.tokens import LABEL, TEXT, TEXT_SIZES, VIEW_SIZE
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.panel import Panel
@@ -130,7 +130,7 @@ def test_text_can_be_read_and_stays_in_any_window_at_any_size(page: Driver):
         page.write_in(text_size)
         page.frames(3)
         canvas = page.app.canvas.reading
-        assert canvas.scale * CAPTION >= 12 * TEXT_SIZES[text_size]  # pixels
+        assert canvas.scale * LABEL >= 12 * TEXT_SIZES[text_size]  # pixels
         panel = page.top.panel
         assert panel.box.right <= canvas.view.right, (size, text_size)
         widgets = boxes(page).values()

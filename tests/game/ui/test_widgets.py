@@ -14,7 +14,7 @@ from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.listing import shortened
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import ChoiceRow, SliderRow
+from game.ui.rows import ChoiceRow
 from game.ui.widget import PointsManager
 from tests.support.driver import Driver
 
@@ -114,20 +114,6 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
     game.frames(60)
     game.post(pygame.KEYUP, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
     assert scene.slider.value == 1.0
-
-
-def test_a_slider_stops_at_its_ticks_as_well_as_at_each_step(context: Context, open_game: Callable[..., Driver]):
-    open_game(Page)
-    ticks = {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
-    slider = SliderRow("", 0.0, (0.0, 1.0), lambda _: None, step=0.1, figure=str, ticks=ticks)
-    up, down = [0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.64, 0.7], [0.64, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.04, 0.0]
-    for direction, stops in ((1, up), (-1, down)):
-        for stop in stops:
-            slider.shift(direction)
-            assert slider.value == pytest.approx(stop), direction
-    for dragged, stop in ((0.03, 0.04), (0.08, 0.1), (0.63, 0.64), (0.61, 0.6), (0.01, 0.0)):
-        slider.set(dragged)
-        assert slider.value == pytest.approx(stop), dragged
 
 
 def test_a_ring_shows_for_keys_and_not_for_the_mouse(page: tuple[Driver, Page]):
