@@ -178,8 +178,6 @@ def test_any_canvas_gives_an_image():
 def test_each_stage_is_kept():
     canvas = seven(at=(20, 300), scale=1.0)
     full = stages(canvas)
-    assert full.drawn.shape == (520, 520)
-    assert full.cropped.shape == pytest.approx((186, 126), abs=2)
     assert full.fitted.shape == full.thinned.shape == (20, 20)
     np.testing.assert_array_equal(full.centred, preprocess(canvas))
 
