@@ -123,7 +123,7 @@ class FlightPauseScene(PauseScene):
         if self._flight.words.next:
             panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
         elif not flown.credit.alone:
-            panel.button(networks.pause_label(self._flight.network.name), self._open_networks)
+            panel.button(texts.PAUSE_NETWORK.format(name=networks.word(self._flight.network.name)), self._open_networks)
 
     def describe_entries(self, panel: Panel, rows: Sequence[tuple[str, OnPress]]) -> None:
         half = (len(rows) + 1) // 2  # in two columns, to be in sight in any window

@@ -208,7 +208,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     driver.keys(pygame.K_ESCAPE)
     play = driver.app.scenes.stack[0]
     assert isinstance(play, PlayScene)
-    driver.press_on(networks.pause_label(play.network.name))
+    driver.press_on(texts.PAUSE_NETWORK.format(name=networks.word(play.network.name)))
     choose(driver, "pilot.py")
     driver.press_on(texts.RUN_CHOOSE)
     driver.keys(pygame.K_ESCAPE)
