@@ -111,7 +111,7 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(ope
     [entry] = Records(context.user_dir).entries()
     assert (entry.pace, entry.alone, entry.medal) == (0.5, False, 0)
     assert entry.bar == "assists"
-    assert texts.ASSIST_HALF_SPEED in play.credit.assists
+    assert texts.ASSIST_WORDS["pace"].format(percent=50) in play.credit.assists
     again = replayed(Records(context.user_dir).read(entry.file).recording)
     while not again.over:
         again.step()
