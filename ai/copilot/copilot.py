@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cached_property
 from typing import Any, Final, Protocol
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.decision import in_points
 from ai.copilot.futures import DECISION_STEPS, Future, Futures, Here, Known, Lookahead
 from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
 from ai.copilot.intent import Intent, in_question
@@ -47,29 +45,17 @@ class Mode(StrEnum):
 class SharedDecision:
     """Joint decision of a pilot and a co-pilot, with all that explains it."""
 
-    observation: Floats  # (n, pads, 9) that it was made on
     pilot: Ints  # (n,) what the pilot asked for
-    values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
-    meant: Floats  # (n, pads, 6) the same, with the likeliest pad's in place of those that can't be meant
     likely: Doubles  # (n, pads) how likely it is that each pad is meant
     assist: float  # how much the co-pilot helped, 0 to 1
-    mode: Mode  # and when it stepped in
-    reward_scale: float  # size of one point of reward in the unit of `values`
     action: Ints  # (n,) what is flown
-    best: Ints  # (n,) what the co-pilot would do
     source: Ints  # (n,) of ActionSource
-    feasible: Bools  # (n, 6) which actions the pilot could have had
     shares: Doubles  # (n, 2) of thrust that are flown, of main engine and jets
     overridden: Bools  # (n,) whether anything else is flown than the pilot asked for
     # A guardian's that goes by futures; None of any other.
     asked: tuple[Push, ...] = ()  # (n) what the pilot pushes
     known: tuple[Known, ...] | None = None  # (n) what comes of each push that was looked at
     held: Bools | None = None  # (n,) whether a plan is held now, so that nobody can crash the flight
-
-    @cached_property
-    def points(self) -> Floats:
-        """Values (n, pads, 6) in points of reward."""
-        return in_points(self.values, self.reward_scale)
 
 
 def guardian_margin(assist: Any) -> Any:
@@ -184,13 +170,15 @@ class CoPilot:
         seen = self._seen(observation, surroundings)
         values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
-        given = observation, pilot, values, meant, likely, self.assist, self.mode, self.reward_scale
+        given = pilot, likely, self.assist
         if self.mode is Mode.GUARDIAN and env is not None:
-            pushes = [Push.of(*push) for push in pushed.tolist()]
-            saved = self._save(env, pushes, values, known, whole=whole)
-            action, _, source, *_ = saved
-            action[source == ActionSource.PILOT] = pilot[source == ActionSource.PILOT]
-            return SharedDecision(*given, *saved)
+            asked = tuple(Push.of(*push) for push in pushed.tolist())
+            chosen, known = self._save(env, asked, values, known, whole=whole)
+            source = np.array([choice.source for choice in chosen])
+            overridden = source != ActionSource.PILOT
+            action = np.where(overridden, [choice.push.action for choice in chosen], pilot)
+            flown, held = np.array([choice.push.shares for choice in chosen]), np.array([each.held for each in chosen])
+            return SharedDecision(*given, action, source, flown, overridden, asked, tuple(known), held)
         weigh = _guard if self.mode is Mode.GUARDIAN else _tolerate
         best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist), self.reward_scale)
         candidates = _candidates(pilot, best)
@@ -200,7 +188,7 @@ class CoPilot:
         overridden = action != pilot
         source[(pilot == COAST) & overridden] = ActionSource.HANDS_OFF
         flown = np.where(overridden[:, None], ACTION_SHARES[action], pushed)
-        return SharedDecision(*given, action, best, source, feasible, flown, overridden)
+        return SharedDecision(*given, action, source, flown, overridden)
 
     def _seen(self, observation: Floats, surroundings: Floats | None) -> Floats:
         """Return what the network reads, (n, pads, features): the surroundings, too, if it has inputs for them."""
@@ -262,10 +250,10 @@ class CoPilot:
 
     def _save(
         self, env: LanderEnv, asked: Sequence[Push], values: Floats, known: Sequence[Known] | None, *, whole: bool
-    ) -> tuple[Any, ...]:
+    ) -> tuple[list[Choice], Sequence[Known]]:
         """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with.
 
-        Returns the fields of a `SharedDecision` from its `action` on.
+        Returns what is chosen, (n), and what was `known` of each push, (n).
         """
         slots, pads, _ = values.shape
         if env.num_envs != slots or DECISION_STEPS % env.frame_skip:
@@ -284,12 +272,7 @@ class CoPilot:
             for slot in np.flatnonzero(env.outcome == Outcome.FLYING).tolist():
                 network, guardian = KEYS[best[slot]], self.guardians[slot]
                 choices[slot] = guardian.choose(here[slot], asked[slot], network, known[slot], whole=whole)
-        feasible = np.array([[push not in each or each[push].passes for push in KEYS] for each in known])
-        source = np.array([choice.source for choice in choices])
-        action = np.array([choice.push.action for choice in choices])
-        shares = np.array([choice.push.shares for choice in choices])
-        held = np.array([choice.held for choice in choices])
-        return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(known), held
+        return choices, known
 
     def _void(self, env: LanderEnv) -> None:
         """Drop all plans where the rules, the ground or the number of landers are others than before."""

@@ -33,9 +33,7 @@ Image = npt.NDArray[np.float32]
 class Stages(NamedTuple):
     """Stages of a drawing's preprocessing: 2-D float32 images in 0 to 1."""
 
-    drawn: Image  # the canvas
-    cropped: Image  # the part of it that has ink
-    fitted: Image  # (20, 20)
+    fitted: Image  # (20, 20), the part that has ink
     thinned: Image  # (20, 20), strokes as wide as in MNIST
     centred: Image  # (28, 28)
 
@@ -82,7 +80,7 @@ def stages(canvas: npt.ArrayLike, *, width: bool = True) -> Stages:
     box = _box(drawn)
     if box is None:
         empty = np.zeros((BOX, BOX), np.float32)
-        return Stages(drawn, drawn, empty, empty, np.zeros((SIDE, SIDE), np.float32))
+        return Stages(empty, empty, np.zeros((SIDE, SIDE), np.float32))
     cropped = drawn[box]
 
     # On a fine grid around the middle of the box.
@@ -97,7 +95,7 @@ def stages(canvas: npt.ArrayLike, *, width: bool = True) -> Stages:
         cells /= growth
         middle = _middle_of(_box(ink))
     thinned = _resample(ink, middle, cells, BOX)
-    return Stages(drawn, cropped, fitted, thinned, _placed(ink, cells))
+    return Stages(fitted, thinned, _placed(ink, cells))
 
 
 def _clean(canvas: npt.ArrayLike) -> Image:

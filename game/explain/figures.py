@@ -45,9 +45,3 @@ def number(value: float) -> str:
     if math.isfinite(value) and 0 < size < _SMALL:
         return decimal(value, min(1 - math.floor(math.log10(size)), _MOST_DIGITS))
     return plotting.compact(value, 4)
-
-
-def signed(value: float) -> str:
-    """Write a number of a network with its sign."""
-    text = number(value)
-    return f"+{text}" if value > 0 else text

@@ -20,7 +20,9 @@ from ai.nn import NeuralNetwork
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Align, Canvas, Point
+from game.drawing.paint import mix
 from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
+from game.explain.figures import decimal
 from game.explain.network_plan import Column, Edge, NetworkPlan, Show
 from game.ui import plotting
 from game.ui.tooltip import TooltipRow, draw_tooltip
@@ -28,6 +30,7 @@ from game.ui.tooltip import TooltipRow, draw_tooltip
 Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
 
 _ADDS: Final = NET
+_BLACK: Final[Colour] = (0, 0, 0)
 _TAKES: Final = EMBER
 _LARGE: Final = 300.0  # points of height from which there is room for values beside the names
 _MARGIN: Final = 8.0  # of the sheets around the box
@@ -246,7 +249,7 @@ def _paint_edge(view: NetworkView, light: Canvas, edge: Edge, ends: tuple[Point,
     wide = 0.7 + 1.3 * edge.size * min(1.0, view.box.height / _LARGE)
     half = 0.5 / light.scale  # a line runs through the middles of pixels, a dot lies between them
     start, end = ((x - half, y - half) for x, y in ends)
-    light.line(start, end, _dimmed(_ADDS if edge.positive else _TAKES, strength), wide)
+    light.line(start, end, mix(_BLACK, _ADDS if edge.positive else _TAKES, min(strength, 1.0)), wide)
 
 
 def _paint_unit(view: NetworkView, light: Canvas, signs: Canvas, centre: Point, lit: float, tone: Colour) -> None:
@@ -273,7 +276,7 @@ def _paint_names(view: NetworkView, signs: Canvas, number: int, centres: list[Po
         x, y = centres[place][0] + shift, centres[place][1] + 0.36 * size - 7 * values
         signs.text(names[unit], (x, y), size=size, colour=NET if place == best else MUTE, align=align)
         if values:
-            figure = _figure(float(column.values[place]) / view.unit_of(number))
+            figure = decimal(float(column.values[place]) / view.unit_of(number), 2)
             signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
     shown = len(column.units)
     if shown < column.total or not names:
@@ -284,16 +287,3 @@ def _paint_names(view: NetworkView, signs: Canvas, number: int, centres: list[Po
 
 def _last_line(view: NetworkView) -> float:
     return _MARGIN + view.box.height - 3
-
-
-def _figure(value: float) -> str:
-    """Write a value in no more room than -99.99 takes."""
-    if abs(value) >= 1000:
-        return plotting.compact(value)
-    return f"{value:.{2 if abs(value) < 99.995 else 1}f}".replace("-", "−")
-
-
-def _dimmed(colour: Colour, strength: float) -> Colour:
-    """Return a colour dimmed to `strength`, for additive blending."""
-    red, green, blue = (round(min(max(strength, 0.0), 1.0) * part) for part in colour)
-    return red, green, blue

@@ -74,11 +74,6 @@ def _write_line(cursor: Cursor, line: Line, widths: Sequence[float]) -> None:
             cursor.canvas.explain((cursor.left, top, cursor.width, cursor.y - top), line.what, partial(str, line.now))
 
 
-def from_left(share: float) -> tuple[float, float]:
-    """Return where the bar of a share begins and ends; the smallest can be seen, too."""
-    return 0.0, max(share, 0.02)
-
-
 def from_zero(value: float, low: float, high: float) -> tuple[float, float]:
     """Return where the bar of a value begins and ends on a scale with 0 on it; both are the same at 0."""
     low, high = min(low, 0.0), max(high, 0.0)

@@ -40,11 +40,6 @@ def eased(settings: Settings) -> Easing:
     return Easing(settings.wider_pads, settings.untimed)
 
 
-def help_word(assist: float) -> str:
-    """Return the word for help of that assist, 0 to 1: the most of which it reaches."""
-    return next(word for word in reversed(HELP) if assist >= ASSISTS[word])
-
-
 class Credit:
     """Credit for one flight; call `prepare` before every step, and `follow` after it.
 
@@ -89,7 +84,8 @@ class Credit:
         if flight.chooser.hand is StickHolder.NETWORK:
             return sentence(texts.NETWORK_FLIES, self.who)
         if flight.chooser.shared and flight.chooser.copilot:
-            return texts.YOU_SHARE[help_word(flight.chooser.copilot.assist)]
+            assist = flight.chooser.copilot.assist
+            return texts.YOU_SHARE[next(word for word in reversed(HELP) if assist >= ASSISTS[word])]
         return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
 
     # What made it easier

@@ -6,6 +6,7 @@ A line is written when an attempt begins and another when it ends, so that leavi
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from datetime import date, datetime
 from pathlib import Path
@@ -15,7 +16,7 @@ from ai.files import Count, OneOf, Sized, append_line
 from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.flight.flight_file import Entry, Record, lines_of
+from game.flight.flight_file import Record, lines_of
 from game.flight.logbook import Records
 
 FILE_NAME: Final = "days.jsonl"
@@ -75,7 +76,6 @@ class Days:
 
     def __init__(self, user_dir: Path) -> None:
         self._path, self._records = user_dir / FILE_NAME, Records(user_dir)
-        self._flown: list[Entry] | None = None  # flights of starts of the day, once they have been asked for
         self.attempts: Mapping[str, Attempt] = self._read()
 
     def _read(self) -> dict[str, Attempt]:
@@ -95,25 +95,13 @@ class Days:
         except OSError as error:
             self.problem = texts.DAYS_NOT_KEPT.format(reason=error.strerror or error)
 
-    def add(self, entry: Entry) -> None:
-        """Add a flight that has just been written into the logbook."""
-        if self._flown is not None:
-            self._flown.append(entry)
-
     def best_flight(self, day: date) -> Record | None:
         """Return the player's best flight of a day that can be replayed; None if there is none."""
-        if self._flown is None:
-            self._flown = [entry for entry in self._records.entries() if entry.course == DAILY]
-        noon, kept = datetime(day.year, day.month, day.day, 12).timestamp(), self._records.kept()
-        near = [entry for entry in self._flown if abs(entry.when - noon) < _AROUND and entry.file in kept]
-        best = sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]
-        records = (self._record(entry.file) for entry in best)
-        return next((record for record in records if record and record.recording.seed == day.toordinal()), None)
-
-    def _record(self, file: str) -> Record | None:
-        if file not in self._records.kept():
-            return None
-        try:
-            return self._records.read(file)
-        except ValueError:  # the logbook says what is wrong with it
-            return None
+        noon = datetime(day.year, day.month, day.day, 12).timestamp()
+        near = [each for each in self._records.entries() if each.course == DAILY and abs(each.when - noon) < _AROUND]
+        for entry in sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]:
+            with suppress(ValueError):  # the logbook says what is wrong with it
+                record = self._records.read(entry.file)
+                if record.recording.seed == day.toordinal():
+                    return record
+        return None

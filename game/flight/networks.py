@@ -55,15 +55,11 @@ def decision_steps(policy: Policy | None) -> int:
 
 @dataclass(frozen=True)
 class Network:
-    """Network by name. `policy` is None if it could not be read, and `problem` then says why.
-
-    `stands_in` says why this one flies although another one should; empty for the one that was asked for.
-    """
+    """Network by name. `policy` is None if it could not be read, and `problem` then says why."""
 
     name: str
     policy: Policy | None = None
     problem: str = ""
-    stands_in: str = ""
 
 
 kept: Final = Kept[Network](most=3)
@@ -86,35 +82,23 @@ def sentence(text: str, flyer: str, **more: object) -> str:
     return words if words.startswith(flyer) and flyer != texts.THE_NETWORK else words[:1].upper() + words[1:]
 
 
-def is_own(name: str) -> bool:
-    """Whether a flyer's name is that of a file of the player's own."""
-    return name.endswith(".py")
-
-
 def flew(name: str) -> str:
     """Return who flew, as the subject of a sentence, by the name in a line of the logbook."""
-    return name if is_own(name) else texts.THE_NETWORK
-
-
-def pause_label(name: str) -> str:
-    """Return what leads from a flight to the networks, while that one, or a pilot of the player's own, flies."""
-    return texts.PAUSE_PILOT.format(name=name) if is_own(name) else texts.PAUSE_NETWORK.format(name=word(name))
+    return name if name.endswith(".py") else texts.THE_NETWORK
 
 
 def titled(name: str) -> str:
     """Return a network, or a pilot, as a sentence calls it."""
-    if is_own(name):
+    if name.endswith(".py"):
         return name
     return texts.NETWORK_EVERYWHERE if name == ANYWHERE else texts.NETWORK_TITLED.format(name=word(name))
 
 
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
-    """Return every folder that looks like a lander's network, by name.
+    """Return every folder that looks like a lander's network, by name: those of the game, then the player's own.
 
-    The player's own come after those of the game.
-
-    A player's network with the name of a shipped one gets a distinct name, and is not left out. The one that lands
-    anywhere is, as it reads more than nine numbers: `chosen` has it where it is of use.
+    A player's network with the name of a shipped one gets another name. The one that lands anywhere is left out, as it
+    reads more than nine numbers: `chosen` has it where it is of use.
     """
     found: dict[str, Path] = {}
     for parent in (models_dir / LANDER, user_dir / PLAYERS):
@@ -173,9 +157,7 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = F
     if not elsewhere or known.get(wanted, shipped / DEFAULT).parent != shipped:
         return network
     anywhere = load(ANYWHERE, shipped / ANYWHERE, NUM_FEATURES + len(SURROUNDINGS))
-    if anywhere.policy:
-        return anywhere
-    return replace(network, stands_in=texts.NETWORK_STANDS_IN.format(name=network.name, problem=anywhere.problem))
+    return anywhere if anywhere.policy else network
 
 
 class Policies:

@@ -33,7 +33,6 @@ class SavedRun:
     saved: float = 0.0  # seconds since 1970
     preset: str = ""  # that its settings began as
     changes: int = 0  # settings that differ from that
-    seed: int = 0
     decisions: int = 0
     seconds: float = 0.0  # of training
     success: float | None = None  # share of validation flights that its best network landed; None if not measured
@@ -54,7 +53,6 @@ class _TrainingFile:
     env: str
     preset: str
     changes: dict[str, Any]
-    seed: Annotated[int, Within(0, 10**LONGEST_NAME)]
     decisions: Annotated[int, Within(0, _MOST)]
     seconds: Annotated[float, Within(0, _MOST)]
     best: _Best | None  # None for a young run, which has not been validated yet
@@ -102,7 +100,7 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
             problem = texts.RUN_ELSEWHERE.format(env=brief(training.env, LONGEST_NAME))
             return SavedRun(name, folder, saved, problem=problem)
         return SavedRun(
-            name, folder, saved, brief(training.preset, LONGEST_NAME), len(training.changes), training.seed,
+            name, folder, saved, brief(training.preset, LONGEST_NAME), len(training.changes),
             training.decisions, training.seconds, training.best.success if training.best else None,
             flyable=True, resumable=(folder / LAST).is_dir(),
         )  # fmt: skip

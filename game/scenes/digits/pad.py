@@ -20,7 +20,6 @@ SIDE: Final = 520  # units along a side of every pad, whatever its size on the s
 _LARGEST: Final = 480.0
 _RADIUS: Final = 12.0
 _PACE: Final = 4.5  # points in a step of 1/60 s: slow enough for a digit
-_MOST_UNDONE: Final = 100
 PEN_WIDTH: Final = 26.0  # units
 _CHORD: Final = 7.0  # units: longer segments between two events are curved
 
@@ -43,7 +42,6 @@ class DrawingPad:
         self.drawing = False
         self._outside = False
         self._strokes: tuple[Stroke, ...] = ()
-        self._history: list[tuple[Stroke, ...]] = []
         self._ink = _Ink(1)
 
     @property
@@ -70,15 +68,12 @@ class DrawingPad:
         return True
 
     def undo(self) -> None:
-        """Undo the last stroke, or the last clearing, if there is one."""
-        if self._history:
-            self._change(self._history.pop())
+        """Undo the last stroke, if there is one."""
+        self._change(self._strokes[:-1])
 
     def clear(self) -> None:
-        """Clear the drawing; `undo` restores it."""
-        if self._strokes:
-            self._remember()
-            self._change(())
+        """Clear the drawing."""
+        self._change(())
 
     def lift(self) -> None:
         """End the stroke, whatever the state of the mouse."""
@@ -95,7 +90,6 @@ class DrawingPad:
         canvas.surface.blit(self._ink.surface, area)
 
     def _begin(self, position: Point) -> None:
-        self._remember()
         self._change((*self._strokes, Stroke(self._place(position))))
         self.drawing, self._outside = True, False
 
@@ -112,9 +106,6 @@ class DrawingPad:
     def _place(self, position: Point) -> Point:
         units = SIDE / self.rect.width
         return (position[0] - self.rect.left) * units, (position[1] - self.rect.top) * units
-
-    def _remember(self) -> None:
-        self._history = [*self._history[1 - _MOST_UNDONE :], self._strokes]
 
     def _change(self, strokes: tuple[Stroke, ...]) -> None:
         self.drawing = False

@@ -10,15 +10,14 @@ import pygame
 
 from ai.explain.unit_sums import UnitSum
 from game.core import texts
-from game.digits.pictures import SIGNED, Numbers, picture
+from game.digits.pictures import SIGNED, Numbers, Picture
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
+from game.drawing.tokens import INK, LABEL, MUTE, NET
 from game.scenes.digits.unit_walk import UnitWalk
 from game.ui.panel import Column
 
-_HEIGHT: Final = 140.0  # of a matrix
-_LEAST: Final = 150.0
+_HEIGHT: Final = 176.0  # of a matrix
+_LEAST, _LARGEST = 150.0, 44.0  # of a column, and of a cell
 _MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
 _FULL: Final = 0.84  # of a cell's width for its figure: any wider, two of them would read as one
 _DIM: Final = 0.45  # of a cell's colour behind its figure
@@ -91,33 +90,20 @@ def _describe_products(column: Column, walk: UnitWalk) -> None:
 
 
 def _add_matrix(column: Column, words: str, values: Callable[[], Numbers]) -> None:
-    painted = PaintCache()
+    """Add a picture of numbers, with figures where these are large enough to be read."""
+    shown = Picture(SIGNED)
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:
-        shown, room = values(), pygame.FRect((0, 0), box.size)
-        painted.draw(canvas, box, shown.tobytes(), lambda sheet: _paint_matrix(sheet, room, shown))
+        matrix = values()
+        largest, written = float(np.abs(matrix).max()), max(matrix.shape) <= _MOST_WRITTEN
+        cell = min(min(box.size) / max(matrix.shape), _LARGEST)
+        place = pygame.FRect(box.topleft, (cell * matrix.shape[1], cell * matrix.shape[0]))
+        shown.draw(canvas, place, matrix / max(largest, 1e-9) * (_DIM if written else 1.0))
+        size = LABEL * min(1.0, _FULL * cell / canvas.text_width(figure(-largest), size=LABEL, tabular=True))
+        for (row, across), value in np.ndenumerate(matrix) if written else ():
+            at = box.left + (across + 0.5) * cell, box.top + (row + 0.5) * cell + 0.36 * size
+            colour = INK if value else MUTE
+            canvas.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)
 
     column.caption(words)
     column.picture(_HEIGHT, draw)
-
-
-def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers) -> None:
-    """Draw numbers in their cells, or as a picture alone where they would be too small to read."""
-    rows, columns = values.shape
-    written = max(rows, columns) <= _MOST_WRITTEN
-    width, height = (box.width, box.height) if written else (min(box.size),) * 2
-    if written and columns < 3:
-        width, height = min(64.0 * columns, width), min(44.0 * rows, height)
-    area = sheet.rect(box.left, box.top, width, height)
-    largest = float(np.abs(values).max())
-    shown = values / max(largest, 1e-9) * (_DIM if written else 1.0)
-    sheet.surface.blit(picture(shown, area.size, SIGNED), area)
-    pygame.draw.rect(sheet.surface, LINE, area, 1)
-    if not written:
-        return
-    across, down = width / columns, height / rows
-    size = LABEL * min(1.0, _FULL * across / sheet.text_width(figure(-largest), size=LABEL, tabular=True))
-    for (row, column), value in np.ndenumerate(values):
-        at = box.left + (column + 0.5) * across, box.top + (row + 0.5) * down + 0.36 * size
-        colour = INK if value else MUTE
-        sheet.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)

@@ -120,7 +120,6 @@ class ReplayScene(WorldScene):
         return self.flight_replay.complete and self.flight_replay.at >= self.flight_replay.reached
 
     def _fly(self) -> None:
-        """Show the next moment, with fire and dust."""
         if self.ended:
             self.flight_replay.flight.rest()
         flight = self.flight_replay.flight
@@ -190,7 +189,6 @@ class ReplayScene(WorldScene):
         return texts.FRIEND_NAME if self.friend else ""
 
     def _copy(self) -> None:
-        """Copy the flight as a code; a friend's as it came, with its own claim."""
         code = code_of(self.friend) if self.friend else codes.code(self.record)
         give(self.context, code, texts.CODE_COPIED)
 
@@ -207,7 +205,6 @@ class ReplayScene(WorldScene):
 
     @property
     def _export_words(self) -> str:
-        """What a press on the film's word does now."""
         film = self.context.film
         return texts.EXPORT_GOES_ON.format(percent=round(100 * film.share)) if film else texts.REPLAY_EXPORT
 

@@ -45,7 +45,6 @@ class LogbookScene(PanelScene):
         self.enter()
 
     def enter(self) -> None:
-        """Read the flights from disk, which the scene above may have changed."""
         self._entries = self._records.entries()
         self._kept = self._records.kept()
         self.build()

@@ -52,7 +52,6 @@ class Timeline(RowWidget):
         self._on_go_to(round(self.length * (x - self.box.left) / self.box.width))
 
     def place(self, step: float) -> float:
-        """Return where a step is on the strip, in points."""
         return self.box.left + self.box.width * min(max(step / self.length, 0.0), 1.0)
 
     def write(self, cursor: Cursor) -> None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import cycle, repeat
 from threading import Thread
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from ai.lander.environment import LanderEnv, Outcome
 from game.drawing.canvas import Canvas
@@ -46,11 +49,7 @@ class MenuBackground:
         self.env = LanderEnv(1, 0, frame_skip=1)
         self.env.reset()
         self.pilot: Policy | None = None
-        self._step = self._flights = 0
-        self._action = np.zeros(1, np.intp)
-        self._rested: int  # steps since a landing
-        self.poses: Poses
-        self.stage: Stage
+        self._step = 0
         self._begin()
         # The first ascent needs none.
         Thread(target=self._load_network, name=LOADER, daemon=True).start()
@@ -76,16 +75,9 @@ class MenuBackground:
         if self.still:
             return
         self._step += 1
-        env = self.env
         was_over = self.over
-        if not was_over:
-            self._decide()
-            env.fly(self._action)
-        elif self._rested < _REST_STEPS:
-            self._rested += 1
-        else:
-            self._stand(env.position[0, 0] if env.outcome[0] == Outcome.LANDED else env.pad[0, 0])
-            self._climbs, self._rested, self._flights = True, 0, self._flights + 1
+        if (action := next(self._actions)) is not None:
+            self.env.fly(action)
         self.poses.take()
         self.stage.follow(np.ones(1, bool), np.array([self.over and not was_over]))
 
@@ -102,26 +94,30 @@ class MenuBackground:
 
     def _begin(self) -> None:
         self._stand(self.env.pad[0, 0])
-        self._climbs, self._rested = True, 0
+        self._actions = self._flights()
         self.poses, self.stage = Poses(self.env), Stage(self.env, np.random.default_rng(0))
         self.stage.blue[:] = 1.0
 
     def _stand(self, x: float) -> None:
         self.env.place(np.ones(1, bool), np.array([[x, self.env.pad[0, 1] + STAND, 0.0, 0.0, 0.0, 0.0]]))
 
-    def _decide(self) -> None:
-        """Return the next action: the ascent's until the lander falls and the network is loaded, then the network's."""
+    def _flights(self) -> Iterator[npt.NDArray[np.intp] | None]:
+        """Yield the action of each step: of an ascent until it falls, then of the pilot; None while it rests."""
         env = self.env
-        falls = env.position[0, 1] > _HIGH and env.velocity[0, 1] < 0
-        if self._climbs and not (falls and self.pilot):
-            self._action[:] = self._ascend()
-        elif self.pilot is not None and (self._climbs or self._step % decision_steps(self.pilot) == 0):
-            self._climbs = False
-            self._action = self.pilot.act(env.observe(), held=env.actions)
+        for lean in cycle(_LEANS):
+            while self.pilot is None or env.position[0, 1] <= _HIGH or env.velocity[0, 1] >= 0:
+                yield np.array([self._ascend(lean)])
+            while not self.over:
+                action = self.pilot.act(env.observe(), held=env.actions)
+                for _ in range(decision_steps(self.pilot)):
+                    if not self.over:
+                        yield action
+            yield from repeat(None, _REST_STEPS)
+            self._stand(env.position[0, 0] if env.outcome[0] == Outcome.LANDED else env.pad[0, 0])
 
-    def _ascend(self) -> int:
+    def _ascend(self, lean: float) -> int:
         """Return the ascent's action: lean to a side, and fire only below a limit of speed, to stay in view."""
         env = self.env
-        off = _LEANS[self._flights % len(_LEANS)] - float(env.angle[0]) - 0.9 * float(env.angular_velocity[0])
+        off = lean - float(env.angle[0]) - 0.9 * float(env.angular_velocity[0])
         steer = _LEFT if off > _SLACK else _RIGHT if off < -_SLACK else 0
         return steer + _MAIN * bool(env.velocity[0, 1] < _CLIMB and env.position[0, 1] < _HIGH)

@@ -70,7 +70,6 @@ class DailyStart(Challenge):
         """Note how the first attempt ended."""
         self.rules.staked = False
         entry = flown.keep()
-        self._days.add(entry)
         if not self.rules.bar:
             self._days.note(self._attempt(entry))
             if self._days.problem:

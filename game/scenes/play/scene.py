@@ -304,8 +304,6 @@ class PlayScene(Scene):
         self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._loaded_for)
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
-        elif self.network.stands_in:
-            context.note(self.network.stands_in)
 
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's own."""

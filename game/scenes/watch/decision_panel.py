@@ -92,7 +92,6 @@ def _write_inputs(cursor: Cursor, inputs: list[float]) -> None:
 
 
 def _sensed(inputs: list[float], number: int) -> str:
-    """Say what an input means, in metres, seconds and degrees."""
     value = inputs[number] / float(OBSERVATION_SCALE[number])
     if number in (4, 5):
         value = math.degrees(math.asin(value) if number == 4 else math.acos(value)) if abs(value) <= 1 else 0.0

@@ -66,7 +66,6 @@ class Flyer:
 
     @property
     def sentence(self) -> str:
-        """Who flies."""
         if self.network.name == networks.SCRIPTED:
             return texts.WATCH_SCRIPTED
         said = texts.WATCH_OWN if isinstance(self.network.policy, OwnPilot) else texts.WATCH_FLIES

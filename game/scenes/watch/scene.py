@@ -57,23 +57,19 @@ class WatchScene(WorldScene):
 
     @property
     def swarm(self) -> Swarm:
-        """The landers that fly."""
         return self.world.swarm
 
     @property
     def decision(self) -> Decision:
-        """The decision that the shown lander flies."""
         return self.swarm.decision.of(self.world.shown)
 
     def enter(self) -> None:
-        """Follow a change of the networks and of the settings."""
         self._follow(self.flyer.look_again())
         self.build()
         if self.world.stage.calm != self.context.settings.reduced_motion:
             self.world.set_up_camera()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Explain, touch or pick a lander, or pass the event to the actions and the choices."""
         if self.explained.handle_event(event) or self.hand.mouse(event):
             return None
         if event.type == pygame.MOUSEWHEEL:
@@ -83,7 +79,6 @@ class WatchScene(WorldScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Stop and step; explain; pause; begin anew; show another lander."""
         stop, step, *speeds = self.playback.actions(texts.HINT_DECISION, stop=self._stop_or_go)
         touches = self.form.focused is self.hand
         touch = self.form.confirms(texts.HINT_TOUCH)
@@ -100,7 +95,6 @@ class WatchScene(WorldScene):
         ]
 
     def update(self) -> Transition | None:
-        """Fly as many steps as the chosen speed makes due."""
         another, anew = self.flyer.update()
         if anew:  # what another one has landed is not this one's
             self.swarm.landed = self.swarm.lost = 0
@@ -117,7 +111,6 @@ class WatchScene(WorldScene):
             self.world.set_up_camera()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the world, the swarm, the hand and the rows."""
         self.world.draw(canvas, self.playback.between(alpha))
         draw_shade(canvas, self.foot.box.top)
         with canvas.clipped(self.free):
@@ -241,6 +234,5 @@ class WatchScene(WorldScene):
         return push("runs", choose=self._take)
 
     def _take(self, name: str, path: Path | None = None) -> None:
-        """Let a pilot fly that was chosen in a list."""
         self.flyer.take(name, path)
         self.playback.stopped = False

@@ -60,12 +60,10 @@ class Hand(VirtualPointer):
 
     @property
     def middle(self) -> Point:
-        """Middle of the ring."""
         return self._lander.place(self._lander.state[:2])
 
     @property
     def radius(self) -> float:
-        """Radius of the ring."""
         return max(_LEAST, _RING * self._lander.points_per_metre * self._lander.size)
 
     @property

@@ -58,7 +58,6 @@ class Watched:
         self.free = context.reading().view
 
     def begin(self, many: bool, seed: int, policy: Policy) -> None:
-        """Begin anew with one lander, or many."""
         count = MANY if many else 1
         self.swarm = Swarm(count, seed, policy)
         self.stage = Stage(self.swarm.env, np.random.default_rng(seed))
@@ -72,12 +71,10 @@ class Watched:
 
     @property
     def env(self) -> LanderEnv:
-        """The landers' environment."""
         return self.swarm.env
 
     @property
     def many(self) -> bool:
-        """Whether more than one flies."""
         return self.env.num_envs > 1
 
     @property
@@ -106,7 +103,6 @@ class Watched:
         self.policy_map.follow(self.env, self.shown, self.swarm.policy)
 
     def fly(self) -> None:
-        """Advance by 1/60 s."""
         swarm = self.swarm
         ended = swarm.step()
         self.stage.follow(np.ones(swarm.env.num_envs, bool), ended)
@@ -134,7 +130,6 @@ class Watched:
 
     @property
     def touched(self) -> bool:
-        """Whether the flight of the shown lander has been touched."""
         return bool(self.swarm.touched[self.shown])
 
     @property
@@ -145,7 +140,6 @@ class Watched:
 
     @property
     def tilt_words(self) -> str:
-        """The tilt of the shown lander."""
         return texts.TOUCH_TILT.format(tilt=math.degrees(float(self.env.tilt[self.shown])))
 
     # Where it is, in points
@@ -189,7 +183,6 @@ class Watched:
     # The picture
 
     def draw(self, canvas: Canvas, between: float) -> None:
-        """Draw the world, the map and the swarm."""
         canvas = self._world(canvas)
         view, size = self._view(canvas, between), _SMALL if self.many else 1.0
         earth = self.clear.earth(EARTH, EARTH_RADIUS)

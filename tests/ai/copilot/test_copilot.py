@@ -49,8 +49,6 @@ def test_the_pilot_keeps_as_much_as_is_safe():
     ):
         decision = CoPilot(valuer(values), 0.8).decide(seen(), [pilot])
         assert (decision.action[0], decision.source[0]) == (action, rule), rule
-        assert decision.best[0] == np.argmax(values)
-        assert decision.feasible[0, action]
 
 
 @pytest.mark.parametrize("mode", Mode)

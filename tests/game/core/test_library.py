@@ -58,7 +58,7 @@ def test_a_run_is_described_by_its_small_file(library: Library, trained: Path):
     shutil.copytree(trained, library.folder / "first")
     (run,) = library.runs()
     assert (run.name, run.folder, run.problem) == ("first", library.folder / "first", "")
-    assert (run.seed, run.decisions, run.resumable) == (5, 4, True)
+    assert (run.decisions, run.resumable) == (4, True)
     assert run.preset in {"modern", "classic"}
     assert run.changes >= 5
     assert run.success is not None
@@ -73,7 +73,7 @@ def test_a_player_without_a_folder_has_no_runs(library: Library):
 
 def test_a_damaged_run_is_listed_with_its_problem_and_can_be_renamed_and_deleted(library: Library):
     nan, wrong = float("nan"), dict[str, list[object]]()
-    wrong = {"decisions": ["many", float("inf"), 10**400, -1], "seconds": [None, nan], "seed": [10**400],
+    wrong = {"decisions": ["many", float("inf"), 10**400, -1], "seconds": [None, nan],
              "best": [3, {"success": nan}], "changes": [1]}  # fmt: skip
     values = [{**DESCRIBED, name: value} for name, values in wrong.items() for value in values]
     for text in ("", "{", "[]", "[" * 100_000, '{"env": "lander"}', *map(json.dumps, values)):
@@ -193,15 +193,15 @@ def test_rename(library: Library):
 
 
 def test_a_name_that_is_taken_is_refused_and_both_runs_stay(library: Library):
-    add(library, "one", seed=1)
-    add(library, "Two", seed=2)
+    add(library, "one", decisions=1)
+    add(library, "Two", decisions=2)
     (library.folder / "three").mkdir()  # whatever lies there, it is not ours to replace
     for taken in ("Two", "two", "TWO", "three"):
         with pytest.raises(LibraryError, match=r"already"):
             library.rename("one", taken)
         with pytest.raises(LibraryError, match=r"already"):
             library.new_folder(taken)
-    assert {run.name: run.seed for run in library.runs()} == {"one": 1, "Two": 2}
+    assert {run.name: run.decisions for run in library.runs()} == {"one": 1, "Two": 2}
 
 
 def test_nothing_outside_the_library_is_touched(library: Library):
@@ -307,10 +307,10 @@ def test_only_one_of_two_games_has_the_place_of_a_run_without_a_name(library: Li
 
 @pytest.mark.parametrize("name", ["run", ".training"])
 def test_a_save_that_was_stopped_between_its_renames_is_put_back(library: Library, name: str):
-    add(library, f".{name}.00000000.old", seed=4)
+    add(library, f".{name}.00000000.old", decisions=4)
     found = library.rescued() if name.startswith(".") else next(iter(library.runs()), None)
     assert found is not None
-    assert found.seed == 4
+    assert found.decisions == 4
 
 
 def test_what_a_save_never_finished_is_cleared_away_in_time(library: Library):

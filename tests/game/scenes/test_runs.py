@@ -20,7 +20,6 @@ from game.ui.context import Context
 from game.ui.entry import EntryRow
 from game.ui.listing import ListRow
 from tests.support.driver import Driver
-from tests.support.player import Player
 
 Open = Callable[..., Driver]
 DESCRIBED = {
@@ -54,7 +53,7 @@ def write(folder: Path, **described: object) -> Path:
 def three(library: Library) -> Library:
     """Runs called a, b and c, the first the latest."""
     for age, name in enumerate("abc"):
-        folder = write(library.folder / name, seed=age)
+        folder = write(library.folder / name)
         (folder / "last").mkdir()
         os.utime(folder / "training.json", (2e9 - age, 2e9 - age))
     return library
@@ -108,7 +107,7 @@ def type_text(driver: Driver, text: str) -> None:
 def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Library):
     driver = open_runs()
     assert [run.name for run in scene(driver).items] == ["a", "b", "c", "modern"]
-    assert driver.the(ListRow).rows[0][:3] == ("a", "75.0 %", "5 k")
+    assert driver.the(ListRow).rows[0][:3] == ("a", "75.0 %", "2033-05-18")
     assert "Go on training" in verbs(driver)
     driver.keys(DOWN, DOWN, DOWN)
     assert shown(driver) == "modern"
@@ -118,7 +117,7 @@ def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Lib
 def test_without_any_network_the_screen_still_stands(open_runs, context: Context, tmp_path: Path):
     context.models_dir = tmp_path / "nothing"
     driver = open_runs()
-    driver.keys(ENTER, pygame.K_DELETE, pygame.K_F2, RIGHT)
+    driver.keys(ENTER, RIGHT)
     assert driver.top_name == "NetworksScene"
     driver.keys(DOWN, RIGHT, ENTER)  # Back
     assert driver.top_name == "MenuScene"
@@ -136,46 +135,20 @@ def test_the_keyboard_renames_what_flies_on(open_runs, three: Library, context: 
     assert shown(driver) == context.settings.model == "moon  walker"
 
 
-def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: Library):
+def test_a_name_that_is_taken_is_explained_and_can_be_changed_or_left(open_runs, three: Library):
     driver = open_runs()
-    driver.key(pygame.K_F2)
+    click(driver, texts.RUN_RENAME)
     type_text(driver, "B")
     driver.key(ENTER)
     assert "already" in driver.said
     assert driver.form.typing
-    type_text(driver, "B2")
-    driver.key(ENTER)
-    assert sorted(run.name for run in three.runs()) == ["B2", "b", "c"]
-
-
-def test_a_name_can_be_left_as_it_was(open_runs, three: Library):
-    driver = open_runs()
-    for leave in (lambda: driver.key(ESCAPE), lambda: click(driver, texts.NAMING_LEAVE)):
-        driver.key(pygame.K_F2)
-        type_text(driver, "other")
-        leave()
-        assert not naming(driver)
-        assert sorted(run.name for run in three.runs()) == ["a", "b", "c"]
-    driver.key(ESCAPE)
-    assert driver.top_name == "MenuScene"
-
-
-def test_the_mouse_accepts_a_name_and_letters_are_no_commands_meanwhile(open_runs, three: Library):
-    driver = open_runs()
-    click_row(driver, 1)
+    click(driver, texts.NAMING_LEAVE)
+    assert not naming(driver)
     click(driver, texts.RUN_RENAME)
-    driver.keys(pygame.K_DELETE, pygame.K_n, pygame.K_SPACE)  # Delete clears the line, and nothing more
-    type_text(driver, "new one")
+    driver.keys(pygame.K_DELETE, pygame.K_n, pygame.K_SPACE)  # Delete clears the line, and letters are no commands
+    type_text(driver, "B2")
     click(driver, texts.NAMING_KEEP)
-    assert sorted(run.name for run in three.runs()) == ["a", "c", "new one"]
-
-
-def test_a_gamepad_renames_with_a_name_made_of_the_figures(open_runs, three: Library):
-    player = Player(open_runs(), "pad")
-    player.press("confirm", "down", "down", "down", "confirm")
-    player.frames(2)
-    player.press("confirm")
-    assert sorted(run.name for run in three.runs()) == ["b", "c", "modern 5k 75.0"]
+    assert sorted(run.name for run in three.runs()) == ["B2", "b", "c"]
 
 
 def test_what_is_deleted_is_asked_for_once_and_gone_for_good(open_runs, three: Library):
@@ -193,16 +166,15 @@ def test_what_is_deleted_is_asked_for_once_and_gone_for_good(open_runs, three: L
 
 
 def test_the_games_own_networks_are_not_to_be_changed(open_runs, context: Context, three: Library):
-    """Deleting all there is leaves a screen that works, and a sentence that says how to make a run."""
+    """Deleting all there is leaves a screen that works."""
     driver = open_runs()
     for _ in range(3):
-        driver.key(pygame.K_DELETE)
         click(driver, texts.RUN_DELETE)
-    driver.keys(pygame.K_DELETE, pygame.K_F2)
+        click(driver, texts.RUN_DELETE)
     assert three.runs() == []
-    assert not naming(driver)
     assert (context.models_dir / "lander" / "modern").is_dir()
-    assert (shown(driver), scene(driver).line) == ("modern", texts.RUNS_NONE)
+    assert shown(driver) == "modern"
+    assert verbs(driver) == [texts.RUN_WATCH, texts.RUN_FLY]
 
 
 def test_what_cannot_be_done_is_said_and_the_screen_stays(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):

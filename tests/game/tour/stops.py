@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field, replace
 
 import pygame
 
+from game.core import texts
 from game.flight.logbook import LOGBOOK, Records
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -87,7 +88,7 @@ STOPS = [
         Stop(name, "with much to list", keys(pygame.K_DOWN), prepare=listed)
         for name in ("LogbookScene", "MissionsScene", "NetworksScene")
     ),
-    Stop("NetworksScene", "naming", keys(pygame.K_F2)),
+    Stop("NetworksScene", "naming", lambda driver: driver.press_on(texts.RUN_RENAME)),
     Stop("BindingsScene", "binding", keys(pygame.K_RETURN)),
     Stop("WatchScene", "stopped", keys(pygame.K_SPACE)),
     Stop("WatchScene", "touched", touched),
