@@ -25,7 +25,6 @@ class Asked:
     answers: int  # so far
     question: Question | None
     liking: Doubles  # (sums,) mean weight of each
-    unsure: Doubles  # (sums,) its standard deviation
 
 
 class TasteSession(Session[Upbringing]):
@@ -40,9 +39,9 @@ class TasteSession(Session[Upbringing]):
 
     def show(self) -> None:
         training = self.training
-        self._asked, weights = training.question, training.taste.weights
-        answers = len(training.taste.answers)
-        self.messages.append(Asked(answers, self._asked, weights.mean(axis=0), weights.std(axis=0)))
+        self._asked = training.question
+        liking = training.taste.weights.mean(axis=0)
+        self.messages.append(Asked(len(training.taste.answers), self._asked, liking))
 
     def tell(self, progress: Progress) -> None:  # noqa: ARG002 - what is shown is no curve
         if self.training.question is not self._asked:

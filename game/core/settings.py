@@ -95,7 +95,10 @@ class SettingsFile:
     def load(self) -> Settings:
         """Read the settings. A damaged file is put aside under another name, never overwritten."""
         try:
-            return Settings.from_dict(self._read())
+            values = parse_json(read_text(self.path, _LARGEST))
+            if not isinstance(values, dict):
+                raise ValueError("not a table of settings")
+            return Settings.from_dict(values)
         except FileNotFoundError:
             return Settings.from_dict({})
         except ValueError:
@@ -104,13 +107,6 @@ class SettingsFile:
         except OSError as error:
             self.problem = texts.SETTINGS_UNREADABLE.format(reason=error.strerror, name=DAMAGED_NAME)
             return Settings(unread=True)
-
-    def _read(self) -> dict[str, Any]:
-        """Return the values in the file; raises OSError or ValueError."""
-        values = parse_json(read_text(self.path, _LARGEST))
-        if not isinstance(values, dict):
-            raise ValueError("not a table of settings")
-        return values
 
     def save(self, settings: Settings) -> bool:
         """Write the settings whole or not at all; a file that could not be read is put aside first."""
@@ -158,10 +154,7 @@ class SettingsWriter:
 
     def problem(self) -> str:
         """Return why the last write failed, once only; empty if it succeeded."""
-        found = ""
-        while not self._problems.empty():
-            found = self._problems.get_nowait()
-        return found
+        return "" if self._problems.empty() else self._problems.get_nowait()
 
     def wait(self) -> None:
         """Wait until every queued change has been written or has failed."""

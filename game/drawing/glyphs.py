@@ -1,4 +1,4 @@
-"""Glyphs for gamepad buttons, mouse buttons and missions: private-use characters that any text can contain.
+"""Glyphs for gamepad and mouse buttons: private-use characters that any text can contain.
 
 Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence, and is
 measured, drawn and kept like any other letter.
@@ -12,11 +12,11 @@ from typing import Final
 
 import pygame
 
-from game.drawing.marks import ICONS, MARKS
+from game.drawing.marks import MARKS
 from game.drawing.tokens import Colour
 from game.input.signs import FAMILIES, FAMILY, FIRST, SIGNS
 
-_LAST: Final = FIRST + len(FAMILIES) * FAMILY + len(ICONS) - 1
+_LAST: Final = FIRST + len(FAMILIES) * FAMILY - 1
 SIGN: Final = re.compile(f"([{chr(FIRST)}-{chr(_LAST)}])")
 
 # Lengths, as multiples of the type size: half a sign's height, its middle above the baseline, the room beside it.
@@ -25,12 +25,6 @@ _MIDDLE: Final = 0.36
 _BESIDE: Final = 0.07
 _STROKE: Final = 0.085
 _WIDE: Final = 1.9
-_ICON: Final = 0.5  # half an icon's height
-
-
-def icon(name: str) -> str:
-    """Return the character that shows one of `game.drawing.marks.ICONS`."""
-    return chr(FIRST + len(FAMILIES) * FAMILY + list(ICONS).index(name))
 
 
 def sign_width(character: str, size: float) -> float:
@@ -52,9 +46,6 @@ def draw_sign(
     middle = pygame.Vector2(start[0] + width / 2, start[1] - _MIDDLE * size)
     stroke = max(1, round(_STROKE * size))
     radius = _RADIUS * size
-    if frame == "icon":
-        ICONS[mark](surface, middle, _ICON * size, colour, stroke)
-        return
     if frame == "cross":
         _draw_cross(surface, middle, radius, colour, stroke, mark)
         return
@@ -80,8 +71,6 @@ def draw_sign(
 
 def _sign(character: str) -> tuple[str, str]:
     family, button = divmod(ord(character) - FIRST, FAMILY)
-    if family == len(FAMILIES):
-        return "icon", list(ICONS)[button]
     return SIGNS[FAMILIES[family]].get(button, ("round", str(button)))
 
 

@@ -13,7 +13,7 @@ from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.widget import EASE, NOWHERE, OnPress, RowWidget, mix
+from game.ui.widget import NOWHERE, OnPress, RowWidget, mix
 
 Words = str | Callable[[], str]  # a function for words that change
 _SWITCH: Final = (32.0, 16.0)
@@ -109,7 +109,6 @@ class ToggleRow(RowWidget):
     def __init__(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> None:
         super().__init__(NOWHERE, label)
         self.value, self._on_change, self._aside = value, change, aside
-        self._slid = float(value)
 
     def press(self) -> None:
         self.value = not self.value
@@ -118,11 +117,6 @@ class ToggleRow(RowWidget):
     def advance(self) -> None:
         self.press()
 
-    def ease(self, at_once: bool) -> None:
-        super().ease(at_once)
-        target = float(self.value)
-        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
-
     def write(self, cursor: Cursor) -> None:
         words = replace(cursor, width=cursor.width - _SWITCH[0] - 2 * STEP)
         words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
@@ -130,9 +124,9 @@ class ToggleRow(RowWidget):
             top = cursor.y + LEADING * cursor.size / 2 - _SWITCH[1] / 2
             box = pygame.FRect(cursor.right - _SWITCH[0], top, *_SWITCH)
             half = box.height / 2
-            cursor.canvas.pill(box, mix(FAINT, NET, self._slid))
-            knob = (box.left + half + (box.width - box.height) * self._slid, box.centery)
-            cursor.canvas.dot(knob, half - 2.5, INK)
+            cursor.canvas.pill(box, NET if self.value else FAINT)
+            knob = box.right - half if self.value else box.left + half
+            cursor.canvas.dot((knob, box.centery), half - 2.5, INK)
         words.text(self.label)
         if self._aside:
             words.gap(2)

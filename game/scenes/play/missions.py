@@ -11,7 +11,6 @@ from ai.lander.rules import tenths
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.glyphs import icon
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
 from game.flight import flight_file
 from game.flight.flight_file import Entry
@@ -85,7 +84,7 @@ class MissionsScene(PanelScene):
 
     def _row(self, name: str) -> Row:
         best = self._best.get(name)
-        return f"{icon(name)}   {texts.MISSIONS[name][0]}", texts.MEDALS[best.medal] if best else "–"
+        return texts.MISSIONS[name][0], texts.MEDALS[best.medal] if best else "–"
 
     def _write_medal(self, medal: int, cursor: Cursor) -> None:
         """Write what a medal asks, behind its lamps, and a tick if it is won."""

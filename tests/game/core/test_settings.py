@@ -1,9 +1,6 @@
 import errno
 import json
 import os
-import subprocess
-import sys
-import time
 from pathlib import Path
 from threading import Event, current_thread
 
@@ -159,15 +156,6 @@ def test_of_two_windows_on_one_folder_the_first_writes_and_the_second_says_so(tm
     assert [path.name for path in tmp_path.iterdir()] == [FILE_NAME]
 
 
-def test_what_is_set_and_set_back_is_what_it_was(tmp_path: Path):
-    writer, settings = opened(tmp_path)
-    for value in (True, False):
-        settings.colour_safe = value
-        writer.save(settings)
-        writer.wait()
-        assert SettingsFile(tmp_path).load().colour_safe is value
-
-
 def test_nothing_that_was_not_changed_is_written(tmp_path: Path):
     SettingsFile(tmp_path).save(Settings())
     writer, settings = opened(tmp_path)
@@ -208,26 +196,3 @@ def test_a_full_disk_is_reported_once_and_tried_again(tmp_path: Path, monkeypatc
     assert writer.problem() == ""
     writer.close(settings)
     assert SettingsFile(tmp_path).load().colour_safe
-
-
-def test_a_kill_at_any_moment_leaves_a_whole_file(tmp_path: Path):
-    """A process that changes settings without end is killed, again and again."""
-    SettingsFile(tmp_path).save(Settings(model="eagle"))
-    script = (
-        "import sys; from pathlib import Path\n"
-        "from game.core.settings import *\n"
-        "file = SettingsFile(Path(sys.argv[1])); settings = file.load(); writer = SettingsWriter(file, settings)\n"
-        "print(flush=True)\n"
-        "while True:\n"
-        "    settings.colour_safe = not settings.colour_safe\n"
-        "    writer.save(settings); writer.wait()\n"
-    )
-    for number in range(2):
-        with subprocess.Popen([sys.executable, "-c", script, tmp_path], stdout=subprocess.PIPE) as process:
-            assert process.stdout
-            process.stdout.readline()
-            time.sleep(0.05 + 0.013 * number)
-            process.kill()
-        file = SettingsFile(tmp_path)
-        assert file.load().model == "eagle"
-        assert not file.problem

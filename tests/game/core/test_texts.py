@@ -57,11 +57,6 @@ def test_no_sentence_stands_elsewhere(trees: dict[str, ast.Module]):
     assert not found
 
 
-def test_the_scan_finds_a_sentence():
-    tree = ast.parse('"""A module of words."""\ncanvas.text(f"Two words {x}")\nraise ValueError("not for players")')
-    assert [node.value for node in spoken(tree) if WORDS.search(node.value)] == ["Two words "]
-
-
 # Names
 
 
@@ -106,8 +101,6 @@ def read_at_import(tree: ast.Module) -> list[str]:
 
 def test_no_text_is_read_before_the_language_is_chosen(trees: dict[str, ast.Module]):
     assert not {path: found for path, tree in trees.items() if (found := read_at_import(tree))}
-    program = "A = texts.A\ndef f(b=texts.B): return texts.C\nclass D:\n    d = texts.D\n    e = lambda: texts.E"
-    assert sorted(read_at_import(ast.parse(program))) == ["line 1: A", "line 2: B", "line 4: D"]
 
 
 def english() -> Catalog:
@@ -119,11 +112,6 @@ def test_every_text_that_is_used_is_there_and_every_text_there_is_used(trees: di
     unknown, unused = unknown_and_unused(trees.values(), names)
     assert not unknown
     assert unused == {"LANGUAGE_NAME"}  # of each language, by the catalogue itself
-
-
-def test_a_text_that_is_missing_and_one_that_is_not_used_are_found():
-    program = ast.parse("texts.HERE; texts.GONE; texts.GROUP['here']; texts.GROUP['gone']")
-    assert unknown_and_unused([program], {"HERE", "GROUP.here", "LEFT"}) == ({"GONE", "GROUP.gone"}, {"LEFT"})
 
 
 # Translations
@@ -210,19 +198,6 @@ def test_what_the_game_reads_is_what_babel_makes_of_what_people_write():
     assert translations.STUB.read_text(encoding="utf-8") == translations.stub(catalogue.read(folder))
 
 
-def test_every_babel_writes_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    for path in catalogue.LOCALE.glob("*.pot"):
-        (tmp_path / path.name).write_bytes(path.read_bytes())
-    written = []
-    for version in ("2.18.0", "9.0"):
-        monkeypatch.setattr("babel.messages.catalog.VERSION", version)
-        translations.follow("de", tmp_path)
-        translations.compile_all(tmp_path)
-        written.append({path: path.read_bytes() for path in sorted(tmp_path.rglob("*.*o"))})
-    assert written[0] == written[1]
-    assert len(written[0]) == 5
-
-
 @pytest.fixture
 def german(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, object]]:
     """The texts in German, of which so much is translated."""
@@ -299,23 +274,3 @@ def test_a_text_is_found_by_name_key_and_place():
         "Trained by settings of its own: 1 is not as in Modern",
         "Trained by settings of its own: 2 are not as in Modern",
     ]
-
-
-def test_a_capital_letter_at_the_beginning_takes_no_other_away():
-    for words, begun in (("coast", "Coast"), ("ohne Schub", "Ohne Schub"), ("ángulo", "Ángulo"), ("", "")):
-        assert catalogue.capital(words) == begun
-
-
-def test_a_language_is_begun_and_brought_up_to_date(tmp_path: Path):
-    for path in catalogue.LOCALE.glob("*.pot"):
-        (tmp_path / path.name).write_bytes(path.read_bytes())
-    translations.follow("pl", tmp_path)
-    begun = tmp_path / "pl" / "LC_MESSAGES" / "tranquility.po"
-    landers: Any = translations.translations(begun).get("{count} flight", "FLIGHTS_COUNT")
-    assert len(landers.string) == 3  # Polish has a form for few
-    empty = 'msgid "Paused"\nmsgstr "'
-    begun.write_text(begun.read_text("utf-8").replace(empty, empty + "Pauza"), "utf-8")
-    for _ in range(2):
-        translations.follow("pl", tmp_path)  # what was translated stays
-    paused: Any = translations.translations(begun).get("Paused", "PAUSE_TITLE")
-    assert paused.string == "Pauza"

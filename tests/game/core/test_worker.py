@@ -224,24 +224,6 @@ def test_a_process_stopped_in_the_middle_of_a_message_holds_up_nothing(start):
 
 @pytest.mark.slow
 @POSIX
-def test_workers_killed_at_any_moment_leave_nothing_but_a_reason(start):
-    rng = np.random.default_rng(50)
-    workers = [start(chores.counting, weight=200_000) for _ in range(12)]
-    began = time.monotonic()
-    for moment, worker_to_kill in zip(sorted(rng.uniform(0.0, 0.5, len(workers))), workers, strict=True):
-        while time.monotonic() - began < moment:
-            time.sleep(0.002)
-            for each in workers:
-                each.poll()
-        os.kill(worker_to_kill.process_id, signal.SIGKILL)
-    for each in workers:
-        over(each)
-        assert each.state is WorkerState.FAILED
-        assert each.problem == texts.WORKER_KILLED.format(signal="SIGKILL")
-
-
-@pytest.mark.slow
-@POSIX
 def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
     keep = tmp_path / "run"
     rng = np.random.default_rng(5)

@@ -221,18 +221,6 @@ def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
     assert np.array_equal(watched.poses.now, alone.poses.now)
 
 
-def test_a_forecast_is_flown_under_the_gravity_of_the_flight():
-    flight = begun(7, ScriptedPilot())
-    forecast = Preview(flight.env, ScriptedPilot())
-    flight.env.gravity *= 1.4
-    while not len(forecast.path):
-        forecast.follow(2)
-    flight.chooser.hand_over()
-    for _ in range(10 * DECISION_STEPS):
-        flight.step()
-    assert np.array_equal(forecast.path[10], flight.poses.now[0, :2])
-
-
 class TrainedAtSeven(ScriptedPilot):
     """Pilot of a network that was trained with seven steps to a decision, and counts its decisions."""
 

@@ -15,10 +15,8 @@ from game.drawing.glyphs import SIGN
 from game.input.controls import Command, Controls
 from game.scenes.play.flight_controls import FINE, FlightControls
 from game.scenes.play.scene import PlayScene
-from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import actions
-from tests.support.screens import save_settings
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15
 
@@ -242,27 +240,3 @@ def test_a_press_switches_the_engine_on_and_the_next_one_off(controls: Controls,
     hands.read(640.0)
     hands.begin()  # another flight
     assert hands.read(640.0) == Push()
-
-
-def test_a_real_pad_flies_with_shares_that_the_flame_follows_and_is_pulled_out(
-    open_game: Callable[..., Driver], context: Context, pads: VirtualPads
-):
-    save_settings(context)
-    game = open_game(PlayScene, 3)
-    play = game.top
-    pads.plug_in()
-    game.frames(3)
-    pads.push(TURN, 20000)
-    pads.push(RISE, -20000)
-    game.frames(40)
-    main, side = play.flight.recording.pushes[-1]
-    assert 0 < main < STEPS
-    assert 0 < side < STEPS
-    thrust = play.flown.scenery.stage.thrust[0]
-    assert thrust[:2].tolist() == pytest.approx([main / STEPS, side / STEPS], abs=0.01)
-    pads.pull_out_all()
-    game.frames(3)
-    assert "PauseScene" in game.top_name
-    game.key(pygame.K_ESCAPE)
-    game.frames(5)
-    assert play.waiting  # it hangs until it is touched

@@ -2,9 +2,8 @@
 
 import pygame
 
-from ai.lander.missions import FIRST, MISSIONS
 from game.core import texts
-from game.drawing import glyphs, typeface
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
 from game.input import signs
@@ -81,13 +80,3 @@ def test_every_sign_is_drawn_and_looks_like_no_other():
             assert abs(surface.get_width() - typeface.reach(sign, 20.0, "regular")) <= 1
             pictures.add(pygame.image.tobytes(surface, "RGBA"))
         assert len(pictures) == len(signs.SIGNS[family])
-
-
-def test_every_mission_has_an_icon_of_its_own():
-    names = [FIRST.name, *MISSIONS, "daily"]
-    pictures = set()
-    for name in names:
-        surface, _ = typeface.render(glyphs.icon(name), 20.0, "regular", INK)
-        pictures.add(pygame.image.tobytes(surface, "RGBA"))
-        assert surface.get_bounding_rect(min_alpha=60).height > 10
-    assert len(pictures) == len(names)

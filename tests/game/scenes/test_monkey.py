@@ -30,18 +30,3 @@ def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkey = Monkey(folder)
     monkey.play(10)
     assert "a fault on purpose" in monkey.faults.found[0]
-
-
-@pytest.mark.slow
-def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    kept: list[MenuScene] = []
-    leave = MenuScene.exit
-
-    def keep(menu: MenuScene) -> None:
-        kept.append(menu)
-        leave(menu)
-
-    monkeypatch.setattr(MenuScene, "exit", keep)
-    monkey = Monkey(folder)
-    monkey.play(10)
-    assert "1 × MenuScene still in memory" in monkey.left_behind()

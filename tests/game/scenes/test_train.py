@@ -99,6 +99,7 @@ def test_start_keeps_what_was_left_if_it_lands(
     driver = open_game(TrainScene)
     driver.frames(2)
     library = driver.top.run.collection
+    driver.top.knobs.ask(SMALL)
     learn(driver)
     assert len(library.runs()) == (share is not None)
 

@@ -50,12 +50,12 @@ def test_a_key_answers_and_another_question_comes(taste, key, answer):
     assert taste.top.pair.question is not question
 
 
-def test_a_click_on_a_flight_likes_it_better_and_backspace_takes_that_back(taste):
+def test_a_click_on_a_flight_likes_it_better_and_a_word_takes_that_back(taste):
     question = taste.top.pair.question
     taste.frames(2)
     taste.click(taste.top.pair.halves[1].box.center)
     taste.wait(lambda: taste.top.run.asked.answers == 1)
-    taste.key(pygame.K_BACKSPACE)
+    taste.press_on(texts.TASTE_BACK)
     taste.wait(lambda: taste.top.run.asked.answers == 0)
     first, second = question
     assert taste.top.pair.question[0].sums.tolist() == first.sums.tolist()
@@ -66,7 +66,12 @@ def test_by_gamepad_alone(taste):
     taste.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
     ask(taste)
     assert taste.top.run.asked.answers == 1
-    taste.button(pygame.CONTROLLER_BUTTON_Y)
+    taste.button(pygame.CONTROLLER_BUTTON_BACK)
+    taste.frames(2)
+    assert taste.top.explained.stepping
+    taste.button(pygame.CONTROLLER_BUTTON_BACK)
+    taste.form.focus(taste.widget(texts.TASTE_BACK))
+    taste.button(pygame.CONTROLLER_BUTTON_A)
     taste.wait(lambda: taste.top.run.asked.answers == 0)
 
 
