@@ -170,21 +170,6 @@ def test_f1_explains_one_thing_after_the_other(gallery: Driver):
 # Quantities
 
 
-def test_a_slider_is_dragged_and_the_exhibit_begins_anew_with_its_value(open_game: Open):
-    driver = open_game(PhysicsScene, "slopes")
-    driver.frames(10)
-    left, right = slider(driver, "degrees")._track
-    y = slider(driver, "degrees").box.centery
-    press(driver, pygame.MOUSEBUTTONDOWN, (right, y))
-    driver.move((left + 0.3 * (right - left), y))
-    press(driver, pygame.MOUSEBUTTONUP, (left + 0.3 * (right - left), y))
-    driver.frames(2)
-    exhibit = scene(driver).exhibit
-    assert exhibit.values["degrees"] == slider(driver, "degrees").value < 30
-    assert exhibit.steps < 5
-    assert np.degrees(exhibit.boxes[0].angle[0]) == pytest.approx(-exhibit.values["degrees"], abs=0.1)
-
-
 def test_a_quantity_is_changed_without_a_mouse_and_stays(open_game: Open):
     player = Player(open_game(PhysicsScene, "bounce"), "pad")
     for _ in range(12):
