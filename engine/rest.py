@@ -8,7 +8,7 @@ Asleep, it costs nothing: it is not moved, nor tried for contacts with what slee
 they were.
 
 Nothing is woken by name: what sleeps is compared with what it was after the last step. So a new place, a
-velocity, a force, a body taken out, a floor moved away and another gravity wake alike, whoever has set them.
+velocity, a force, a body taken out and a floor moved away wake alike, whoever has set them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Rest:
 
     """
 
-    def __init__(self, state: BodyState, params: BodyParams, gravity: Array, allowed: bool) -> None:
+    def __init__(self, state: BodyState, params: BodyParams, allowed: bool) -> None:
         self._dynamic, self._allowed = params.dynamic, allowed
         self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
@@ -44,21 +44,20 @@ class Rest:
         self._place: Array = state.pose.copy()  # where each body was when it came to be still
         self._pace: Array = state.velocity.copy()  # and its velocity then
         self._still: Ints = np.zeros(state.active.shape, dtype=np.intp)  # for how many steps it has been
-        self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
+        self._seen = state.pose, state.velocity, state.active  # after the last step in which a body slept
 
-    def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
+    def wake_disturbed(self, state: BodyState, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
         if self._allowed and state.force.any():
             self._still[state.force.any(axis=2)] = 0  # what is pushed is not still
         if self.awake is None:
             return
-        pose, velocity, active, gravity_before = self._seen
-        now = state.pose, state.velocity, state.active, gravity
+        pose, velocity, active = self._seen
+        now = state.pose, state.velocity, state.active
         if not state.force.any() and all(map(np.array_equal, self._seen, now)):
             return
         differs = (state.pose != pose) | (state.velocity != velocity) | (state.force != 0)
         disturbed = differs.any(axis=2) | (state.active != active)
-        disturbed |= self.asleep & np.any(gravity != gravity_before, axis=-1, keepdims=True)
         self.wake(disturbed, contacts)
 
     def wake_touched(self, found: Contacts | None, contacts: Contacts | None) -> bool:
@@ -88,7 +87,7 @@ class Rest:
         self._still[chosen] = 0
         self._find_sleepers(contacts)
 
-    def fall_asleep(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
+    def fall_asleep(self, state: BodyState, contacts: Contacts | None) -> None:
         """Let fall asleep what has been still for long enough."""
         if not self._allowed:
             return
@@ -100,7 +99,7 @@ class Rest:
             self._find_sleepers(contacts)
             state.velocity[self.asleep] = 0.0
         if self.awake is not None:
-            self._seen = state.pose.copy(), state.velocity.copy(), state.active.copy(), gravity
+            self._seen = state.pose.copy(), state.velocity.copy(), state.active.copy()
 
     def _find_sleepers(self, contacts: Contacts | None) -> None:
         """Let sleep every island that something fixed holds up, and that nothing restless touches."""

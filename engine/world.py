@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -53,9 +52,9 @@ class World:
         self._params = BodyParams.empty()
         self.contacts: Contacts | None = None
         self._remembered: Contacts | None = None  # those of `contacts` whose impulses begin the next step
+        self._prepared: BodyParams | None = None  # for which all below is made
         self.gravity = gravity
         self.iterations = iterations
-        self._prepared: BodyParams | None = None  # for which all below is made
         self._shape_table: ShapeTable
         self._broad_phase: BroadPhase
         self._narrow_phase: NarrowPhase
@@ -73,13 +72,9 @@ class World:
         if gravity.shape not in ((2,), (self.batch, 2)):
             raise ValueError(f"gravity must be of shape (2,) or ({self.batch}, 2), not {gravity.shape}")
         gravity.flags.writeable = False
-        if self._remembered:
-            # Impulses that bore a stack under a stronger gravity would throw it up: they shrink to g·g' / g·g.
-            before, strength = self._gravity, dot(self._gravity, self._gravity)
-            share = np.where(strength > 0, dot(before, gravity) / np.maximum(strength, 1e-30), 1.0).clip(0.0, 1.0)
-            impulse = self._remembered.impulse * np.broadcast_to(share, self.batch)[self._remembered.world, None]
-            self._remembered = replace(self._remembered, impulse=impulse)
         self._gravity: Array = gravity
+        if self.sleeping and self._prepared:
+            self.wake()
 
     @property
     def params(self) -> BodyParams:
@@ -157,7 +152,7 @@ class World:
         """
         self._prepare()
         state, params, movers, gravity, rest = self.state, self.params, self.movers, self.gravity, self._rest
-        rest.wake_disturbed(state, gravity, self.contacts)
+        rest.wake_disturbed(state, self.contacts)
         contacts = self._find_contacts() if touching else None
         solver = Solver(state, params, contacts) if contacts else None
         integrate_velocity(state, params, movers, gravity, DT, rest.awake)
@@ -169,7 +164,7 @@ class World:
         state.refresh_rotation(movers)
         state.force[:, movers] = 0.0
         self._remember(contacts)
-        rest.fall_asleep(state, gravity, self.contacts)
+        rest.fall_asleep(state, self.contacts)
 
     def _find_contacts(self) -> Contacts | None:
         """Return what touches, with the impulses that it begins with; None if nothing does."""
@@ -202,7 +197,7 @@ class World:
         self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic)
         self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN)
         self._narrow_phase = NarrowPhase(params, self._shape_table)
-        self._rest = Rest(self.state, params, self.gravity, self.sleeping)
+        self._rest = Rest(self.state, params, self.sleeping)
 
     @property
     def movers(self) -> Span:
@@ -257,22 +252,20 @@ class World:
     def memory(self) -> dict[str, Any]:
         """Return what the next step takes over from the last one, arrays that no step changes; `recall` puts it back.
 
-        Together with `state`, `params` and the settings of the constructor, it is all that the future depends on of
-        worlds in which nothing sleeps.
+        Together with `state`, `params`, `gravity` and the settings of the constructor, the future follows from it, if
+        nothing sleeps.
         """
-        return {"gravity": self.gravity, "contacts": dict(vars(self._remembered)) if self._remembered else {}}
+        return dict(vars(self._remembered)) if self._remembered else {}
 
     def recall(self, memory: Mapping[str, Any]) -> None:
         """Put back what a call of `memory` returned."""
-        contacts = memory["contacts"]
-        self.contacts = self._remembered = Contacts(**contacts) if contacts else None
+        self.contacts = self._remembered = Contacts(**memory) if memory else None
         self.forget_boxes()
 
 
 def memory_of_worlds(memory: Mapping[str, Any], worlds: Ints) -> dict[str, Any]:
     """Return the memory of some worlds (m,), each as often as it is named."""
-    contacts, gravity = memory["contacts"], memory["gravity"]
-    if contacts:
-        world, row = np.nonzero(worlds[:, None] == contacts["world"])
-        contacts = {name: table[row] for name, table in contacts.items()} | {"world": world}
-    return {"gravity": gravity if gravity.ndim == 1 else gravity[worlds], "contacts": contacts}
+    if not memory:
+        return {}
+    world, row = np.nonzero(worlds[:, None] == memory["world"])
+    return {name: table[row] for name, table in memory.items()} | {"world": world}

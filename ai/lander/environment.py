@@ -134,12 +134,8 @@ class LanderEnv:
 
     @property
     def gravity(self) -> float:
-        """Gravity in m/s², of the first lander where they differ; can be changed at any time, for all landers."""
+        """Gravity in m/s², of the first lander where they differ."""
         return -float(self.world.gravity[..., 1].flat[0])
-
-    @gravity.setter
-    def gravity(self, gravity: float) -> None:
-        self.world.gravity = np.array([0.0, -gravity])
 
     @property
     def position(self) -> Doubles:

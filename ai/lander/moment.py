@@ -61,8 +61,6 @@ class Moment:
     def of(cls, env: LanderEnv) -> Moment:
         """Return the present moment of an environment."""
         world, count = env.world, env.num_envs
-        memory = world.memory()
-        felt = np.broadcast_to(memory["gravity"], (count, 2)).copy()
         state = {
             "built": _built(env.params, env.ground),
             **{name: _values(getattr(env, name)) for name in _RULES},
@@ -71,7 +69,7 @@ class Moment:
             "air": np.broadcast_to(world.params.quadratic_drag, (count, len(world.bodies), 3)).copy(),
             "landers": {name: getattr(env, name).copy() for name in env.kept},
             "bodies": {name: value.copy() for name, value in _values(world.state).items()},
-            "memory": {**memory, "gravity": felt},
+            "memory": world.memory(),
             "landings": env.landings,
         }
         return cls(env.ground, state)

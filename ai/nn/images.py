@@ -60,7 +60,6 @@ class ConvolutionLayer(FullyConnectedLayer):
         return self._convolve(self.input, self.output)
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array."""
         images = np.asarray(input_data, self.dtype, order="F")
         return self._convolve(images, np.empty((len(images), *self.outputs), self.dtype, "F"))
 
@@ -150,13 +149,11 @@ class MaxPoolingLayer(Layer):
         self.outputs = (height // size, width // size, channels)
 
     def forward_propagate(self, input_data: Array) -> Array:
-        """Return the maxima, (batch, height, width, channels)."""
         self.input = input_data
         self.output = fitting(self.output, (len(input_data), *self.outputs), input_data.dtype)
         return self._maximum(input_data, self.output)
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array."""
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
     def input_error(self, output_error: Array) -> Array:
@@ -211,11 +208,9 @@ class FlattenLayer(Layer):
         return input_data.reshape(-1, self.outputs, order="F")
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same."""
         return self.forward_propagate(input_data)
 
     def input_error(self, output_error: Array) -> Array:
-        """Return the error in the shape of the images."""
         self.error = fitting(self.error, (len(output_error), *self.inputs), output_error.dtype)
         self.error.reshape(output_error.shape, order="F")[...] = output_error
         return self.error

@@ -27,12 +27,10 @@ class FullyConnectedLayer(Layer):
 
     @property
     def weights(self) -> Array:
-        """Weights, (inputs, outputs)."""
         return self.parameters[0].value
 
     @property
     def bias(self) -> Array:
-        """Biases, (outputs,)."""
         return self.parameters[1].value
 
     def forward_propagate(self, input_data: Array) -> Array:
@@ -45,7 +43,6 @@ class FullyConnectedLayer(Layer):
         return self.output
 
     def predict(self, input_data: Array) -> Array:
-        """Return x W + b as a new array, (batch, outputs) or (outputs,)."""
         weights, bias = self.parameters
         output: Array = input_data.dot(weights.value)
         output += bias.value
@@ -64,7 +61,6 @@ class FullyConnectedLayer(Layer):
         return self.error
 
     def initial_value(self, name: str) -> Array:
-        """Return zeros for the bias, and weights drawn as suits the activation that follows."""
         if name == "bias":
             return np.zeros(self.shapes[name])
         draw = self.initialise or glorot_uniform
@@ -95,16 +91,13 @@ class DuelingLayer(FullyConnectedLayer):
         return q
 
     def predict(self, input_data: Array) -> Array:
-        """Return Q as a new array, (batch, outputs) or (outputs,)."""
         q: Array = super().predict(input_data).dot(self.mixture)
         return q
 
     def fill_gradients(self, output_error: Array) -> None:
-        """Set the gradients of both streams' weights and biases."""
         super().fill_gradients(output_error.dot(self.mixture.T))
 
     def input_error(self, output_error: Array) -> Array:
-        """Return the sum of what both streams send back, (batch, inputs)."""
         return super().input_error(output_error.dot(self.mixture.T))
 
 
@@ -121,13 +114,11 @@ class ActivationLayer(Layer):
         self.activation = Activation.of(activation, derivative)
 
     def forward_propagate(self, input_data: Array) -> Array:
-        """Return f(x), of the shape of x."""
         self.input = input_data
         self.output = fitting(self.output, input_data.shape, input_data.dtype)
         return self.activation.function(input_data, out=self.output)
 
     def predict(self, input_data: Array) -> Array:
-        """Return f(x) as a new array."""
         return self.activation.function(input_data)
 
     def input_error(self, output_error: Array) -> Array:
@@ -164,7 +155,6 @@ class LayerNormalisation(Layer):
         self.epsilon = epsilon
 
     def forward_propagate(self, input_data: Array) -> Array:
-        """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
         # Five arrays in one: there is one look whether they fit the batch.
         self.buffers = fitting(self.buffers, (5, *input_data.shape), self.dtype)
@@ -176,7 +166,6 @@ class LayerNormalisation(Layer):
         return self.output
 
     def predict(self, input_data: Array) -> Array:
-        """Return the normalised batch, or the one example, as a new array."""
         gain, bias = self.parameters
         if input_data.ndim == 1:  # with plain numbers in place of columns of one: in a third of the time
             centred: Array = input_data - input_data.dot(self._average)
@@ -217,7 +206,6 @@ class LayerNormalisation(Layer):
         return _constant(self.size, 1 / self.size, self.dtype)
 
     def initial_value(self, name: str) -> Array:
-        """Return gains of 1 and biases of 0."""
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
 
 
@@ -249,11 +237,9 @@ class DropoutLayer(Layer):
         return self.output
 
     def predict(self, input_data: Array) -> Array:
-        """Return the input as it is."""
         return input_data
 
     def input_error(self, output_error: Array) -> Array:
-        """Return the error of what was not dropped, enlarged alike, and 0 elsewhere."""
         self.error = fitting(self.error, self.factors.shape, self.factors.dtype)
         np.multiply(output_error, self.factors, out=self.error)
         return self.error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 from typing import Final
 
@@ -15,8 +14,8 @@ from game.core.clock import STEP
 from game.drawing.tokens import Colour
 from game.world.camera import View
 
-_COUNT: Final = 90
-_WIDTH, _LOW, _HIGH = 64.0, 1.3, 24.0  # metres: width, and the heights between which dust drifts
+_COUNT: Final = 200
+_WIDTH, _LOW, _HIGH = 140.0, 1.3, 24.0  # metres: width, more than any view's, and the heights between which dust drifts
 _CARRY: Final = 16.0  # m/s of the air for every m/s² that it pushes a craft
 _TRAIL: Final = 0.2  # seconds of movement that a grain's trail covers
 _STEPS: Final = 4  # points: lengths of trails are multiples of it, so that few pictures are made
@@ -57,14 +56,10 @@ class Wind:
         place = self._start.copy()
         place[:, 0] = (place[:, 0] + gone) % _WIDTH - _WIDTH / 2
         length = np.abs(speed) * _TRAIL * view.pixels_per_metre / view.scale
-        reach = abs(view.centre[0]) + surface.get_width() / (2 * view.pixels_per_metre)
-        apart = _WIDTH * view.pixels_per_metre
-        copies = math.ceil(max(0.0, reach / _WIDTH - 0.5))  # on either side, in a view wider than the dust
         trails = []
         for (x, y), points, near in zip(view.pixels(place).tolist(), length.tolist(), self._near.tolist(), strict=True):
             trail = _trail(max(1, round(points / _STEPS)), view.scale, self._dust, round(3 * near))
-            left = x - trail.get_width() / 2
-            trails += [(trail, (round(left + apart * copy), round(y))) for copy in range(-copies, copies + 1)]
+            trails.append((trail, (round(x - trail.get_width() / 2), round(y))))
         surface.fblits(trails)
 
 

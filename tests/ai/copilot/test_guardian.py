@@ -190,7 +190,7 @@ def test_a_network_that_does_not_land_never_seizes_the_stick():
 
 def test_a_plan_is_void_under_other_rules(agent):
     def change_gravity(env):
-        env.gravity *= 1.05
+        env.world.gravity = 1.05 * env.world.gravity
 
     def change_wind(env):
         env.conditions = Conditions(wind=0.05)

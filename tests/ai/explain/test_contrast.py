@@ -6,15 +6,20 @@ import numpy as np
 import pytest
 
 from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from ai.digits.mnist import load_part
 from ai.explain.contrast import Contrast
 from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from game.core.assets import MODELS_DIR
 
+SMALL = DIGIT_PRESETS["modern"].changed(filters=(4, 5), kernel=3)
 
-@pytest.fixture(scope="module", params=["modern", "classic"])
+
+@pytest.fixture(scope="module", params=["convolution", "classic"])
 def classifier(request):
-    return DigitClassifier.load(MODELS_DIR / "digits" / request.param)
+    if request.param == "classic":
+        return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+    return DigitClassifier(build_digit_network(SMALL, np.random.default_rng(0)))
 
 
 @pytest.fixture(scope="module")

@@ -50,18 +50,6 @@ def test_each_lander_of_a_batch_flies_as_it_would_alone():
     assert Outcome.LANDED in env.outcome
 
 
-def test_a_flight_and_its_site_do_not_depend_on_how_many_fly_beside_or_begin_anew():
-    few, many = AnywhereEnv(2, 5), AnywhereEnv(40, 5)
-    for _ in range(3):
-        assert np.array_equal(few.reset(), many.reset()[:2])
-        for _ in range(10):
-            assert np.array_equal(few.step(np.full(2, 4)).observation, many.step(np.full(40, 4)).observation[:2])
-    env = AnywhereEnv(6, 1, sites=("any",))
-    before, after = env.reset(), env.reset(np.array([True, False] * 3))
-    assert np.array_equal(before[1::2], after[1::2])
-    assert (before[::2, NUM_FEATURES:] != after[::2, NUM_FEATURES:]).any(axis=1).all()
-
-
 def test_limits_of_a_touch_are_those_of_each_site():
     env = AnywhereEnv(2, 0, frame_skip=1)
     env.set_sites([Site(touch_speed=3.0, slide_speed=1.2), Site()])
@@ -103,10 +91,3 @@ def test_sites_of_every_kind_can_be_flown(subtests):
                 result = env.step(ScriptedPilot().act(env.observe_for(None)))
             assert np.isfinite(result.observation).all()
             assert (env.outcome == Outcome.LANDED).any()
-
-
-def test_gravity_can_be_read_and_is_the_first_landers():
-    for slots in (1, 3):
-        env = AnywhereEnv(slots, 0)
-        env.reset()
-        assert env.gravity == -env.world.gravity[0, 1] > 0

@@ -8,7 +8,6 @@ import pytest
 
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
-from ai.lander.ground import Ground, Pad
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR, SURROUNDINGS_SCALE
 from tests.support.landers import STAND, fly, placed, put
 
@@ -77,13 +76,6 @@ def test_a_pad_moves_and_what_stands_on_it_is_carried_along_and_has_landed():
     assert abs(env.pad_shift[0]) > 1.0
 
 
-def test_observations_are_relative_to_the_moving_pad():
-    env = falling(Conditions(swing=3.0, swing_period=16.0))
-    result = fly(env, steps=240)  # a quarter of a period: the pad is farthest to the right, and at rest
-    assert result.observation[0, [0, 2]] == pytest.approx([-0.3 * 3.0, 0.0], abs=0.01)
-    assert env.observe(0)[0].tolist() == env.observe_pads()[0, 0].tolist()
-
-
 def test_on_the_calm_moon_only_the_clock_runs():
     at_first, later = (seen(falling(Conditions(), seconds, limits=replace(LIMITS, time=15.0))) for seconds in (0, 3.0))
     assert at_first.pop("time left") == pytest.approx(15.0)
@@ -113,15 +105,8 @@ def test_wind_engine_fuel_and_pad_are_seen_and_announced(subtests):
             assert [now[name] for name in names] == pytest.approx(expected, abs=1e-3)
     assert seen(falling(replace(HARD, tank=0.5), 1.0, 3))["fuel left"] == 0.0
     env = falling(Conditions(), 0.5)
-    env.gravity = 3.0
+    env.world.gravity = (0.0, -3.0)
     assert seen(env)["gravity"] == pytest.approx(3.0)
-
-
-def test_of_several_pads_each_has_its_width():
-    env = placed((0, 12), (0, 12), ground=Ground((Pad(-6.0, 1.6, 6.0), Pad(6.0, 1.6, 3.6))))
-    env.target[:] = [0, 1]
-    assert [seen(env, slot)["pad width"] for slot in (0, 1)] == pytest.approx([6.0, 3.6])
-    assert seen(env, 0, pad=1)["pad width"] == pytest.approx(3.6)
 
 
 def test_in_a_mirror_only_what_points_aside_changes_its_sign():

@@ -28,17 +28,6 @@ def test_a_leg_follows_from_seed_number_and_start_alone():
     assert first_kinds == {("open",), ("ridge",), ("canyon",), ("overhang",), ("cave",)}
 
 
-def test_legs_become_longer_windier_and_end_on_smaller_pads():
-    def means(number: int) -> list[float]:
-        legs = [leg(seed, number) for seed in range(20)]
-        longer = np.mean([each.ground.pads[0].x - each.ground.pads[-1].x for each in legs])
-        smaller = np.mean([each.ground.pads[0].width for each in legs])
-        windier = np.mean([abs(each.conditions.wind) + each.conditions.gust for each in legs])
-        return [float(longer), -float(smaller), float(windier)]
-
-    assert (np.diff([means(number) for number in (1, 5, 9, 13, 16)], axis=0) > 0).all()
-
-
 def test_a_route_keeps_clear_of_all_rock_and_the_start_stands_free(subtests: pytest.Subtests):
     around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     circle = CLEAR * np.stack([np.cos(around), np.sin(around)], axis=1)

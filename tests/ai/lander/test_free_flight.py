@@ -87,7 +87,7 @@ def fly_both(case, slots=3, decisions=120):
     for number, actions in zip(range(decisions), asked(many, rng), strict=False):
         if number == 30 and not isinstance(many, AnywhereEnv):
             for env in (many, *alone):
-                env.gravity = 0.8 * env.gravity
+                env.world.gravity = (0.0, -0.8 * env.gravity)
         ended = (many.outcome != Outcome.FLYING).all()
         if number % 3 == 2:
             shares = rng.uniform((0.0, -1.0), (1.0, 1.0), (slots, 2))

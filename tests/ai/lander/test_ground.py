@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import PARAMS, Cause, Outcome
-from ai.lander.ground import PADS, Ground, Pad, clearance, hilly, knoll
+from ai.lander.ground import PADS, Ground, Pad, clearance, hilly
 from tests.support.landers import fly, placed
 
 THREE = Ground(
@@ -62,12 +62,6 @@ def test_hills_leave_room_for_every_approach():
             assert ground.height(pad.x) == pad.top, seed
         assert ground.height(x).max() < 6.0, seed
         assert len(ground.hills) > len(PADS), seed
-
-
-def test_a_knoll_is_flat_under_its_pad_and_a_little_wider_on_both_sides():
-    left, *top, right = knoll(Pad(2.0, 2.3, 4.0), 1.0)
-    assert np.array(top) == pytest.approx(np.array([(-0.5, 2.0), (4.5, 2.0)]))
-    assert left[0] + right[0] == pytest.approx(4.0)
 
 
 def test_ground_that_makes_no_sense_is_refused():

@@ -26,7 +26,7 @@ def hard(slots=6):
     env = LanderEnv(slots, 3, "near", 4, params=params, ground=GROUND, limits=limits, conditions=HARD)
     env.reset()
     env.target = np.arange(slots) % 2
-    env.gravity, env.strictness = 2.5, 0.8
+    env.world.gravity, env.strictness = (0.0, -2.5), 0.8
     return env
 
 

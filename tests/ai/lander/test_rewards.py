@@ -32,14 +32,6 @@ def test_in_points_a_flight_is_paid_for_its_two_ends_alone():
     assert paid == pytest.approx(shaped(start, Situation.of(env), env.weights), abs=1e-2)
 
 
-def test_alignment_falls_to_nothing_three_metres_aside_or_half_a_radian_from_upright():
-    for offset, tilt, share in ((0, 0, 1.0), (1.5, 0, 0.5), (0, 0.25, 0.5), (1.5, 0.25, 0.25), (3, 0, 0), (0, 0.5, 0)):
-        assert situation(0, 0, offset, tilt).aligned == pytest.approx(share)
-    weights = RewardWeights()
-    paid = [REWARDS[name](weights, situation(0.3, 0.4, 0, 0), MIDDLE) for name in ("distance", "speed")]
-    assert np.ravel(paid) == pytest.approx([1.5, 0.2])  # half a point for each 0.1 m, 0.05 for each 0.1 m/s
-
-
 def test_each_part_pays_what_it_says(subtests):
     still = {"outcome": 0, "actions": 0, "steps": 10, "tilted_steps": 0, "feet_steps": 0}
     for name, before, after, paid in [

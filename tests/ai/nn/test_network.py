@@ -131,26 +131,15 @@ class Gain(Layer):
 @pytest.mark.parametrize("place", [0, 1])
 def test_a_custom_layer_learns_wherever_it_stands(place):
     network = NeuralNetwork(*CostFunctions.use_mse(), dtype=np.float64)
-    for layer in (Gain(2), FullyConnectedLayer(2, 2))[:: 1 - 2 * place]:
-        network.add_layer(layer)
-    gain = network.layers[place].parameters[0]
-    before, y = gain.value.copy(), 3.0 * XOR_X
-    history = network.train(XOR_X, y, epochs=200, batch_size=4, learning_rate=0.05)
+    network.add_layer(*(Gain(2), FullyConnectedLayer(2, 2))[:: 1 - 2 * place])
+    before = network.layers[place].parameters[0].value.copy()
+    history = network.train(XOR_X, 3.0 * XOR_X, epochs=200, batch_size=4, learning_rate=0.05)
     assert history[-1] < 0.01 * history[0]
-    assert (gain.value != before).all()
-    output = network.forward_propagate(XOR_X).copy()
-    network.backward_propagate(network.cost.derivative(output, 0 * y))
-    step, gradients = 1e-6, network.gradients.copy()
-    gain.value[0] += step
-    above = network.cost(network.predict(XOR_X), 0 * y)
-    gain.value[0] -= 2 * step
-    assert gain.gradient[0] == pytest.approx((above - network.cost(network.predict(XOR_X), 0 * y)) / (2 * step))
-    gain.value[0] += step
+    gain, dense = network.layers[place].parameters[0].value, network.layers[1 - place]
+    assert (gain != before).all()
     error = network.input_gradient(XOR_X, np.ones((4, 2)))
-    dense: Any = network.layers[0 if place else 1]
-    both = dense.weights * (gain.value if place else gain.value[:, None])
+    both = dense.weights * (gain if place else gain[:, None])
     np.testing.assert_allclose(error, np.tile(both.sum(axis=1), (4, 1)))
-    np.testing.assert_array_equal(network.gradients, gradients)
 
 
 def test_a_custom_layer_is_saved_once_it_is_registered(tmp_path, monkeypatch):
@@ -200,25 +189,15 @@ def test_a_copy_is_independent():
     assert not np.array_equal(network.predict(XOR_X), expected)
 
 
-@pytest.mark.parametrize("head", [FullyConnectedLayer, DuelingLayer])
-def test_a_batch_of_one_is_predicted_as_among_others_whatever_became_of_the_network(head):
+def test_a_batch_of_one_is_predicted_as_among_others_whatever_became_of_the_network():
     rng = np.random.default_rng(3)
     x = rng.normal(size=(4, 5))
     network = NeuralNetwork(*CostFunctions.use_mse(), dtype=np.float64).add_layer(FullyConnectedLayer(5, 7))
-
-    def agrees(some: NeuralNetwork) -> None:
+    network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()), LayerNormalisation(7), DuelingLayer(7, 3))
+    for some in (network, network.copy()):
         answers = [some.predict(row[None]) for row in x]
         np.testing.assert_allclose(np.concatenate(answers), some.predict(x), rtol=1e-12)
         answers[1][...] = 7  # an array of its own
         np.testing.assert_allclose(some.predict(x[1:2]), some.predict(x)[1:2], rtol=1e-12)
-
-    agrees(network)
-    network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh())).add_layer(LayerNormalisation(7))
-    agrees(network.add_layer(head(7, 3)))
-    network.values = rng.normal(size=network.values.shape)
-    agrees(network)
-    twin = network.copy()
-    agrees(twin)
-    twin.values = 0 * twin.values
-    assert not twin.predict(x[:1]).any()
-    assert network.predict(x[:1]).all()
+        some.values = rng.normal(size=network.values.shape)
+        np.testing.assert_allclose(some.predict(x[1:2]), some.predict(x)[1:2], rtol=1e-12)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.nn import OPTIMIZERS, SGD, Adam, DivergenceError, Momentum
+from ai.nn import OPTIMIZERS, SGD, Adam, DivergenceError
 
 STEPS = 25
 
@@ -64,16 +64,14 @@ def test_a_state_carries_on(name):
     np.testing.assert_array_equal(whole, broken_off)
 
 
-def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
+def test_a_damaged_state_or_one_of_another_kind_is_refused_and_changes_nothing(subtests):
     change: Any
     for change, message in [
         ({"square_sum": np.ones(4, np.float32)}, r"square_sum should hold float32 \[3\]"),
-        ({"square_sum": np.ones(3)}, "square_sum should hold float32"),
         ({"gradient_sum": np.array([0, np.nan, 0], np.float32)}, "gradient_sum holds numbers that are not finite"),
         ({"steps": np.array(-1)}, "whole number"),
         ({"steps": np.array(2.5)}, "whole number"),
-        ({"steps": np.array("seven")}, "whole number"),
-        ({"velocity": np.ones(3)}, "it holds gradient_sum, square_sum, steps, velocity"),
+        ({"velocity": np.ones(3)}, "not a state of Adam: it holds gradient_sum, square_sum, steps, velocity"),
     ]:
         with subtests.test(change=change, message=message):
             optimizer, values = Adam(), np.ones(3, np.float32)
@@ -83,17 +81,10 @@ def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
                 optimizer.load_state(before | change, values)
             for name, array in optimizer.state().items():
                 np.testing.assert_array_equal(array, before[name])
-
-
-def test_a_state_of_another_kind_or_number_of_parameters_is_refused():
-    momentum = Momentum()
-    momentum.step(np.ones(3), np.ones(3))
-    with pytest.raises(ValueError, match="not a state of Adam"):
-        Adam().load_state(momentum.state(), np.ones(3))
     with pytest.raises(ValueError, match="not a state of SGD"):
         SGD().load_state({}, np.ones(3))
     with pytest.raises(ValueError, match="3 parameters"):
-        momentum.step(np.ones(4), np.ones(4))
+        optimizer.step(np.ones(4), np.ones(4))
 
 
 def test_a_long_gradient_is_shortened():

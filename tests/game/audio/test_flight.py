@@ -84,7 +84,7 @@ def test_warnings_come_when_they_matter_and_know_gravity_and_the_brake():
     ):  # fmt: skip
         heard = over_the_pad(height, fall=fall, angle=angle)
         env = heard.flight.env
-        env.gravity = share * env.params.gravity
+        env.world.gravity = (0.0, -share * env.params.gravity)
         heard.step(action)
         assert warned(heard) == warning, (height, fall, angle, action, share)
     watched = Heard(0.0, STANDING + 2, 0.0, -3.0, 0.8, 0.0, warns=False)

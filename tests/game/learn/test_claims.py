@@ -12,7 +12,6 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.learn import pay
 from game.scenes.learn.choice import MOMENTS
-from game.scenes.learn.memory import KEPT, MemoryChapter
 from game.scenes.learn.pay import PAYS
 from game.scenes.learn.runs import BOUND, DARING, PAY, RIGHT
 
@@ -53,18 +52,15 @@ def test_modern_is_what_chapters_5_and_7_say():
     assert f"{BOUND:g}" in texts.LEARN_TARGET_WHY
 
 
-def test_values_can_run_away_without_a_target_network_and_do_not_with_it():
-    def peak(every: int, seed: int) -> float:
-        run = SmallRun(SMALL_RUN.changed(target_update_interval=every), seed)
-        return max(run.advance().value for _ in range(160))
+def test_values_can_run_away_without_a_target_network_and_do_not_with_it_or_with_normalised_layers():
+    def peak(config: Config, seed: int) -> float:
+        run = SmallRun(config, seed)
+        return max(run.advance().value for _ in range(140))
 
-    assert peak(100, 0) < BOUND
-    assert any(peak(1, seed) > 10 * BOUND for seed in range(5)), "eight of ten do, and the first on most processors"
-
-
-def test_normalised_layers_keep_values_in_bounds_without_a_copy():
-    run = SmallRun(RIGHT[1], 0)
-    assert max(run.advance().value for _ in range(160)) < BOUND, "none of ten passed it"
+    alone, normalised = RIGHT
+    assert peak(SMALL_RUN, 0) < BOUND
+    assert peak(normalised, 0) < BOUND, "none of ten passed it"
+    assert any(peak(alone, seed) > 10 * BOUND for seed in (0, 1, 3)), "eight of ten do"
 
 
 @pytest.mark.slow
@@ -79,16 +75,3 @@ def test_daring_can_find_a_landing_that_is_only_paid_at_the_end():
 
     pairs = ([landed(share, seed) for share in DARING[:2]] for seed in range(8))
     assert any(sometimes > never + 0.5 for never, sometimes in pairs), "the first on most processors"
-
-
-def test_the_latest_memories_alone_hold_nothing_of_yesterday():
-    # What comes of it differs from seed to seed and from processor to processor: `benchmarks.small_runs`.
-    yesterday, today = 40, 20
-    for keep in KEPT:
-        run = SmallRun(SMALL_RUN, 0, MemoryChapter.PLAN._replace(change=yesterday, keep=keep))
-        for _ in range(yesterday + today):
-            run.advance()
-        begun = run.env.num_envs * yesterday
-        held = run.state.memory.oldest >= begun
-        assert held == (keep is not None), keep
-        assert run.state.tested is not None

@@ -73,8 +73,8 @@ def test_a_chapter_grows_in_two_languages_and_leads_on(open_game: Open, context:
         assert part in said
     scene.chapter.found()
     said = written(driver, monkeypatch)
-    for part in (texts.LEARN_UNSETTLED, texts.LEARN_UNDECIDED[key][:20], "shown"):
-        assert part in said
+    assert texts.LEARN_UNSETTLED in said
+    assert "shown" in said
     assert not done(driver, key)
     for came in (0, 1, None):
         scene.chapter.found()
@@ -97,14 +97,14 @@ def test_a_chapter_is_done_once_a_try_has_answered_its_question(open_game: Open,
     scene, answers = driver.top, texts.LEARN_ANSWERS["neuron"]
     driver.press_on(answers[0])
     scene.chapter.model.set(0, -1.0)
-    driver.skip(400)
+    for _ in range(400):
+        scene.chapter.update()
     said = written(driver, monkeypatch)
     assert scene.finding in said, "a try that answers nothing is told, too"
     assert texts.LEARN_UNSETTLED in said
     driver.press_on(texts.LEARN_NEURON_HINT)
-    driver.skip(300)
     while scene.chapter.model.seconds < 10.1:
-        driver.skip()
+        scene.chapter.update()
     said = written(driver, monkeypatch)
     assert driver.saved()["learnt"]["neuron"]["done"] is True
     there = texts.LEARN_NEURON_FLIGHT["there"].format(seconds=10)
@@ -136,7 +136,9 @@ def test_a_finding_comes_by_itself_and_leaving_ends_a_run(open_game: Open, conte
     scene.begin()
     for action in (scene.chapter.model.worst, scene.chapter.model.best):
         scene.chapter.begin_with(action)
-        driver.skip(500)
+        while scene.chapter.model.running:
+            scene.chapter.update()
+        driver.frames(2)
     assert done(driver, "choice")
     assert scene.chapter.why().split()[0] in written(driver, monkeypatch)
     driver = open_game(ChapterScene, "pay")

@@ -8,7 +8,7 @@ from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
-from tests.support.small import LANDERS, learn, pause, toggle
+from tests.support.small import learn, pause, toggle
 
 
 def start(driver: Driver) -> None:
@@ -83,13 +83,3 @@ def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
     train.frames(2)
     assert isinstance(train.top, TrainScene)
     assert train.said == texts.LESSON_NO_RUN
-
-
-def test_a_run_that_has_not_begun_to_learn_says_so(train: Driver) -> None:
-    train.top.knobs.ask(LANDERS.changed(learning_starts=50_000, replay_size=60_000))
-    toggle(train)
-    train.wait(lambda: train.top.run.swarm_state)
-    train.press_on(texts.LESSON_WHY)
-    train.frames(5)
-    assert isinstance(train.top, TrainScene)
-    assert "learn" in train.said
