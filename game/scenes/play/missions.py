@@ -59,7 +59,7 @@ class MissionsScene(PanelScene):
         panel.title(texts.MISSIONS_TITLE)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
-        self._list = left.listing(
+        left.listing(
             [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, pitch=_PITCH,
             index=self._index, on_choose=self._choose,
         )  # fmt: skip
