@@ -151,7 +151,7 @@ def test_one_that_is_elsewhere_or_under_another_gravity_is_not_on_the_plan(agent
     assert plan.push(Here.of(env))
     env.world.gravity = 1.1 * env.world.gravity
     assert plan.push(Here.of(env)) is None
-    env.gravity /= 1.1
+    env.world.gravity = env.world.gravity / 1.1
     env.fly(np.array([3]))
     assert plan.push(Here.of(env)) is None  # between two decisions
     for _ in range(3):
