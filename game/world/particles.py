@@ -182,7 +182,8 @@ class Particles:
         surface.fblits([(_puff(*row[1:3], self._dust), row[3]) for row in rows if row[0] == ParticleKind.DUST])
         for number in np.flatnonzero(kind == ParticleKind.SHARD).tolist():
             size = float(radius[number]) * min(1.0, 2 * float(left[number]))
-            _draw_shard(surface, place[number], size, int(look[number]), float(age[number]))
+            x, y = place[number].tolist()
+            _draw_shard(surface, x, y, size, int(look[number]), float(age[number]))
         shining = [(_glow(*row[:3]), row[3]) for row in rows if row[0] >= ParticleKind.SPARK]
         surface.fblits(shining, pygame.BLEND_RGB_ADD)
 
@@ -221,9 +222,11 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     )
 
 
-def _draw_shard(surface: pygame.Surface, middle: Doubles, size: float, look: int, age: float) -> None:
+def _draw_shard(surface: pygame.Surface, x: float, y: float, size: float, look: int, age: float) -> None:
     """Draw a tumbling three-cornered fragment of foil or frame."""
-    turns = look + age * (3 + look % 5) / 4 + np.array([0.0, 0.3, 0.65])
-    reach = size * (0.5 + 0.5 * np.abs(np.sin(look + np.arange(3))))[:, None]
-    corners = middle + reach * np.stack([np.cos(math.tau * turns), 0.8 * np.sin(math.tau * turns)], axis=1)
-    pygame.draw.polygon(surface, _SHARDS[look % len(_SHARDS)], corners.tolist())
+    corners = []
+    for number, turn in enumerate((0.0, 0.3, 0.65)):
+        angle = math.tau * (look / 7 + age * (3 + look % 5) / 4 + turn)
+        reach = size * (0.5 + 0.5 * abs(math.sin(look + number)))
+        corners.append((x + reach * math.cos(angle), y + 0.8 * reach * math.sin(angle)))
+    pygame.draw.polygon(surface, _SHARDS[look % len(_SHARDS)], corners)

@@ -55,9 +55,10 @@ class Wind:
         gone, speed = (self._near * self._of_air(given) for given in (conditions.impulse(time), conditions.push(time)))
         place = self._start.copy()
         place[:, 0] = (place[:, 0] + gone) % _WIDTH - _WIDTH / 2
+        seen = np.abs(place[:, 0] - view.centre[0]) < 0.6 * surface.get_width() / view.pixels_per_metre
         length = np.abs(speed) * _TRAIL * view.pixels_per_metre / view.scale
-        trails = []
-        for (x, y), points, near in zip(view.pixels(place).tolist(), length.tolist(), self._near.tolist(), strict=True):
+        trails, rows = [], (view.pixels(place), length, self._near)
+        for (x, y), points, near in zip(*(each[seen].tolist() for each in rows), strict=True):
             trail = _trail(max(1, round(points / _STEPS)), view.scale, self._dust, round(3 * near))
             trails.append((trail, (round(x - trail.get_width() / 2), round(y))))
         surface.fblits(trails)
