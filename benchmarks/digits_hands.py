@@ -1,11 +1,10 @@
 """How well digits are read that hands of no data set draw in the scene, as events of a real mouse.
 
-    python -m benchmarks.digits_hands [--each 12] [--sheet misread.png] [--models DIR]
+    python -m benchmarks.digits_hands [--each 12]
 
 The styles are those of `benchmarks.hand_styles`. Hands differ in slant, aspect, size, place, unsteadiness and haste: a
 pen is slower where it turns (the two-thirds power law, Lacquaniti et al. 1983), a mouse reports where it is 60 to 125
-times a second, in whole pixels. Prints what each network reads of each style, and of each table of styles; a sheet
-shows what Modern, else Classic, misreads: drawn, and as it was seen.
+times a second, in whole pixels. Prints what each network reads of each style, and of each table of styles.
 """
 
 from __future__ import annotations
@@ -97,27 +96,9 @@ def draw(scene: DigitsScene, strokes: list[np.ndarray]) -> None:
         scene.handle_event(pygame.event.Event(pygame.MOUSEBUTTONUP, pos=points[-1], button=1))
 
 
-def tile(scene: DigitsScene, digit: int, drawn: list[np.ndarray]) -> pygame.Surface:
-    """Return a drawing with the mouse's places on it, what was seen, and what was read."""
-    picture = pygame.Surface((360, 180))
-    ink = pygame.surfarray.make_surface((scene.pad.ink().T[..., None] * [150, 150, 150]).astype(np.uint8))
-    for stroke in drawn:
-        for x, y in stroke / 2:
-            ink.set_at((int(x), int(y)), (255, 120, 0))
-    seen = (scene.reading.image.T[..., None] * [255, 255, 255]).astype(np.uint8)
-    picture.blit(pygame.transform.smoothscale(ink, (170, 170)), (0, 0))
-    picture.blit(pygame.transform.scale(pygame.surfarray.make_surface(seen), (168, 168)), (180, 0))
-    said = ", ".join(
-        f"{name} {values.argmax()} {values.max():.0%}" for name, values in scene.reading.probabilities.items()
-    )
-    picture.blit(pygame.font.Font(None, 18).render(f"{digit}: {said}", True, (255, 255, 255)), (4, 168))
-    return picture
-
-
-def read(scene: DigitsScene, styles: Styles, each: int, rng: np.random.Generator) -> list[pygame.Surface]:
-    """Draw so many of each style, print what is read of them, and return tiles of what is misread."""
+def read(scene: DigitsScene, styles: Styles, each: int, rng: np.random.Generator) -> None:
+    """Draw so many of each style, and print what is read of them."""
     right: dict[str, list[bool]] = {"modern": [], "classic": []}
-    tiles = []
     for (digit, style), strokes in styles.items():
         for _ in range(each):
             drawn = events([np.array(stroke, float) for stroke in strokes], rng, scene.pad.rect.width)
@@ -125,41 +106,26 @@ def read(scene: DigitsScene, styles: Styles, each: int, rng: np.random.Generator
             assert scene.probabilities is not None
             for name, values in scene.reading.probabilities.items():
                 right[name].append(int(values.argmax()) == digit)
-            if not right["modern"][-1] or (not right["classic"][-1] and len(tiles) < 60):
-                tiles.append(tile(scene, digit, drawn))
         said = "  ".join(f"{name} {sum(hits[-each:]):3d}" for name, hits in right.items())
         print(f"{digit} {style:22s} of {each:3d}:  {said}", flush=True)
     for name, hits in right.items():
         print(f"{name:8s} reads {np.mean(hits):.1%} of {len(hits)}\n")
-    return tiles
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--each", type=int, default=12, help="drawings of each style (default: 12)")
-    parser.add_argument("--sheet", type=Path, help="where to put a picture of what is misread")
-    parser.add_argument("--models", type=Path, help="a folder of networks to read with, other than the shipped")
     chosen = parser.parse_args()
     frames = count()
     with TemporaryDirectory() as folder:
-        models = chosen.models or MODELS_DIR
-        context = Context(Path(folder), Settings(), models_dir=models, rng=np.random.default_rng(21))
+        context = Context(Path(folder), Settings(), models_dir=MODELS_DIR, rng=np.random.default_rng(21))
         app = App(context, DigitsScene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
         scene = app.scenes.top
         assert isinstance(scene, DigitsScene)
         app.tick()
-        tiles = [
-            tile
-            for seed, styles in ((21, HANDS), (22, UNSEEN))
-            for tile in read(scene, styles, chosen.each, np.random.default_rng(seed))
-        ]
-        if chosen.sheet and tiles:
-            rows = -(-len(tiles) // 5)
-            sheet = pygame.Surface((5 * 360, rows * 184))
-            for number, each in enumerate(tiles):
-                sheet.blit(each, (number % 5 * 360, number // 5 * 184))
-            pygame.image.save(sheet, chosen.sheet)
+        for seed, styles in ((21, HANDS), (22, UNSEEN)):
+            read(scene, styles, chosen.each, np.random.default_rng(seed))
         app.close()
 
 

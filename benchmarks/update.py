@@ -2,13 +2,12 @@
 
     python -m benchmarks.update
 
-An update is the whole of it: next states through the target network, the largest Q of each, states through
-the online network, squared error at the chosen actions only, the way back, one step of Adam. A decision is
-one observation through the network. PyTorch has its fused Adam, and is measured as it is, compiled (where there is a
-C++ compiler; it takes a minute at first) and, for a decision, traced and optimized for inference: the table has the
-quickest, and says which. A `learn` is all that the preset modern learns in one decision, from a memory of a million,
-drawn uniformly and by priorities. All take turns, ten updates or a hundred decisions each, so that a busy machine slows
-all; times are processor time, without that of other work.
+An update is the whole of it: next states through the target network, the largest Q of each, states through the online
+network, squared error at the chosen actions only, the way back, one step of Adam. A decision is one observation through
+the network. PyTorch's update has its fused Adam, and is compiled, which needs a C++ compiler and a minute at first; its
+decision is traced and optimized for inference: its quickest ways. A `learn` is all that the preset modern learns in one
+decision, from a memory of a million, drawn uniformly and by priorities. All take turns, ten updates or a hundred
+decisions each, so that a busy machine slows all; times are processor time, without that of other work.
 """
 
 import os
@@ -20,7 +19,6 @@ import platform
 import statistics
 import time
 from collections.abc import Callable
-from contextlib import suppress
 
 import numpy as np
 
@@ -31,7 +29,6 @@ from ai.nn import (
     Adam,
     CostFunctions,
     FullyConnectedLayer,
-    LayerNormalisation,
     NeuralNetwork,
 )
 from ai.training.config import PRESETS
@@ -55,19 +52,6 @@ def tanh_network() -> NeuralNetwork:
         .add_layer(FullyConnectedLayer(128, 128))
         .add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
         .add_layer(FullyConnectedLayer(128, 6))
-    )
-
-
-def normalised_network() -> NeuralNetwork:
-    return (
-        NeuralNetwork(*CostFunctions.use_mse())
-        .add_layer(FullyConnectedLayer(9, 64))
-        .add_layer(LayerNormalisation(64))
-        .add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
-        .add_layer(FullyConnectedLayer(64, 64))
-        .add_layer(LayerNormalisation(64))
-        .add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
-        .add_layer(FullyConnectedLayer(64, 6))
     )
 
 
@@ -107,19 +91,13 @@ def our_learn(prioritised: bool) -> Task:
     return agent.learn
 
 
-def torch_network(normalised: bool = False) -> "torch.nn.Module":
+def torch_network() -> "torch.nn.Module":
     nn = torch.nn
-    if not normalised:
-        return nn.Sequential(nn.Linear(9, 128), nn.Tanh(), nn.Linear(128, 128), nn.Tanh(), nn.Linear(128, 6))
-    return nn.Sequential(
-        *(nn.Linear(9, 64), nn.LayerNorm(64), nn.ReLU()),
-        *(nn.Linear(64, 64), nn.LayerNorm(64), nn.ReLU()),
-        nn.Linear(64, 6),
-    )
+    return nn.Sequential(nn.Linear(9, 128), nn.Tanh(), nn.Linear(128, 128), nn.Tanh(), nn.Linear(128, 6))
 
 
-def torch_updates(normalised: bool, size: int) -> dict[str, Task]:
-    online, target = torch_network(normalised), torch_network(normalised)
+def torch_update(size: int) -> Task:
+    online, target = torch_network(), torch_network()
     optimizer = torch.optim.Adam(online.parameters(), 1e-3, fused=True)
     states, actions, rewards, next_states, terminals = map(torch.from_numpy, batch_of(size))
 
@@ -129,14 +107,15 @@ def torch_updates(normalised: bool, size: int) -> dict[str, Task]:
         q = online(states).gather(1, actions[:, None])[:, 0]
         return torch.nn.functional.mse_loss(q, goal)
 
-    def update(loss_of: Callable[[], "torch.Tensor"]) -> None:
-        loss = loss_of()
+    compiled = torch.compile(loss_now)
+
+    def update() -> None:
+        loss = compiled()
         optimizer.zero_grad()
         loss.backward()
         optimizer.step()
 
-    compiled = torch.compile(loss_now)
-    return {"as it is": lambda: update(loss_now), "compiled": lambda: update(compiled)}
+    return update
 
 
 def our_decision() -> Task:
@@ -144,29 +123,15 @@ def our_decision() -> Task:
     return lambda: network.predict(observation)
 
 
-def torch_decisions() -> dict[str, Task]:
+def torch_decision() -> Task:
     network, observation = torch_network().eval(), torch.from_numpy(batch_of(1)[0])
-
-    def deciding(decide: Callable[["torch.Tensor"], object]) -> Task:
-        def decision() -> object:
-            with torch.inference_mode():
-                return decide(observation)
-
-        return decision
-
     traced = torch.jit.optimize_for_inference(torch.jit.trace(network, observation))
-    ways = {"as it is": network, "traced": traced, "compiled": torch.compile(network)}
-    return {name: deciding(way) for name, way in ways.items()}
 
+    def decision() -> object:
+        with torch.inference_mode():
+            return traced(observation)
 
-def working(tasks: dict[str, Task]) -> dict[str, Task]:
-    """Run each task once; return those that can be run: compiling needs a compiler of C++."""
-    found = {}
-    for name, task in tasks.items():
-        with suppress(Exception):
-            task()
-            found[name] = task
-    return found
+    return decision
 
 
 def medians(*tasks: Task, calls: int, rounds: int = ROUNDS) -> list[float]:
@@ -192,11 +157,9 @@ def main() -> None:
     print(f"{'':44}{'ours':>8}{'PyTorch':>10}{'ratio':>8}")
 
     for size in (64, 256):
-        theirs = torch_updates(False, size) if torch is not None else {}
+        theirs = torch_update(size) if torch is not None else None
         report(f"update 9-128-128-6 tanh, batch {size}", our_update(tanh_network(), size), theirs, 10)
-    theirs = torch_updates(True, 256) if torch is not None else {}
-    report("update 9-64-64-6 normalised ReLU, batch 256", our_update(normalised_network(), 256), theirs, 10)
-    report("decision 9-128-128-6 tanh", our_decision(), torch_decisions() if torch is not None else {}, 100)
+    report("decision 9-128-128-6 tanh", our_decision(), torch_decision() if torch is not None else None, 100)
 
     uniform, prioritised = medians(our_learn(False), our_learn(True), calls=2)
     print(f"\nlearn, uniform {uniform:,.0f} µs, prioritised {prioritised:,.0f} µs: {prioritised / uniform:.2f} times")
@@ -205,16 +168,10 @@ def main() -> None:
         print('\nPyTorch is not installed; to compare with it: pip install -e ".[bench]"')
 
 
-def report(name: str, ours: Task, theirs: dict[str, Task], calls: int) -> None:
-    theirs = working(theirs)
-    ours_took, *rest = medians(ours, *theirs.values(), calls=calls)
-    if not theirs:
-        print(f"{name:44}{ours_took:8.1f}{'-':>10}{'-':>8}", flush=True)
-        return
-    took = dict(zip(theirs, rest, strict=True))
-    best = min(took, key=took.__getitem__)
-    others = ", ".join(f"{way} {each:.1f}" for way, each in took.items() if way != best)
-    print(f"{name:44}{ours_took:8.1f}{took[best]:10.1f}{ours_took / took[best]:8.2f}  {best} ({others})", flush=True)
+def report(name: str, ours: Task, theirs: Task | None, calls: int) -> None:
+    took, *rest = medians(*filter(None, (ours, theirs)), calls=calls)
+    beside = f"{rest[0]:10.1f}{took / rest[0]:8.2f}" if rest else ""
+    print(f"{name:44}{took:8.1f}{beside}", flush=True)
 
 
 if __name__ == "__main__":

@@ -67,10 +67,6 @@ class Taste:
         """Learn from one more answer."""
         self.restore(np.concatenate([self.differences, difference[None]]), np.append(self.answers, answer))
 
-    def take_back(self) -> None:
-        """Forget the last answer."""
-        self.restore(self.differences[:-1], self.answers[:-1])
-
     def restore(self, differences: Doubles, answers: Ints) -> None:
         """Learn from these answers alone."""
         self.differences, self.answers = differences, answers
@@ -170,22 +166,14 @@ class PaidMemory(ReplayBuffer):
 
     def add(self, transitions: Transition) -> Ints:
         """Keep transitions, and their mirror images, whose sums differ in what is to the left."""
-        mirror, sums = LANDER_SYMMETRY, transitions.reward
-        state, next_state = ((each, mirror.mirrored(each)) for each in (transitions.state, transitions.next_state))
-        action, sums = (
-            (transitions.action, mirror.actions[transitions.action]),
-            np.concatenate([sums, sums * _MIRRORED]),
-        )
-        both = (
-            state,
-            next_state,
-            action,
-            (sums @ self._points,),
-            2 * (transitions.terminal,),
-            2 * (transitions.steps,),
-        )
-        rows = super().add(Transition(*map(np.concatenate, both)))
-        self._sums[rows] = sums
+        mirror, mirrored = LANDER_SYMMETRY, LANDER_SYMMETRY.mirrored
+        image = transitions._replace(
+            state=mirrored(transitions.state), next_state=mirrored(transitions.next_state),
+            action=mirror.actions[transitions.action], reward=transitions.reward * _MIRRORED,
+        )  # fmt: skip
+        both = Transition(*map(np.concatenate, zip(transitions, image, strict=True)))
+        rows = super().add(both._replace(reward=both.reward @ self._points))
+        self._sums[rows] = both.reward
         return rows
 
     def pay(self, points: Doubles) -> None:

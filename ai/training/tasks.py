@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Generator
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Final, Generic, Self, TypeVar
+from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
@@ -117,16 +117,6 @@ class Evaluation(Score):
     switches: float  # times a second that an engine goes on or off, of all flights
     hard: float | None = None  # share of further flights, from hard starts, that landed; None where none were flown
 
-    @classmethod
-    def of(cls, sums: Doubles) -> Self:
-        """Return the means of a number of flights, from their sums as `flown` returns them."""
-        counts, (returns, landing_seconds, landing_fuel, switches, seconds) = sums[: len(Outcome)], sums[-5:].tolist()
-        episodes, landed = int(counts.sum()), int(counts[Outcome.LANDED])
-        success, crash, out_of_bounds, time_out = (counts[Outcome.LANDED :] / episodes).tolist()
-        took, burnt = (each / landed if landed else None for each in (landing_seconds, landing_fuel))
-        shares = success, crash, out_of_bounds, time_out
-        return cls(episodes, *shares, returns / episodes, took, burnt, switches / seconds)
-
     def better_than(self, other: Evaluation | None) -> bool:
         """Whether more flights landed, random and hard starts together, or as many and the mean return is higher.
 
@@ -147,12 +137,8 @@ class Evaluation(Score):
         return f"{self.figure} of {self.episodes} validation flights landed{took}"
 
 
-def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[Doubles]:
-    """Fly all slots of `env`, which has just been reset, to the end; return the sums of the slots `measured`.
-
-    They are: how many ended in each outcome; returns; seconds, and seconds of main engine, of the landings; engines
-    that went on or off; seconds of all flights.
-    """
+def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[Evaluation]:
+    """Fly all slots of `env`, which has just been reset, to the end; return the score of the slots `measured`."""
     observation = env.observe()
     returns: Doubles = np.zeros(env.num_envs)
     switches: Ints = np.zeros(env.num_envs, dtype=np.intp)
@@ -165,11 +151,12 @@ def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[
         observation = result.observation
         returns += result.reward
         yield
-    outcomes, seconds, fuel = env.outcome[measured], env.time[measured], env.fuel[measured]
+    outcomes, seconds = env.outcome[measured], env.time[measured]
     landed = outcomes == Outcome.LANDED
-    counts = np.bincount(outcomes, minlength=len(Outcome))
-    sums = returns[measured].sum(), seconds[landed].sum(), fuel[landed].sum(), switches[measured].sum(), seconds.sum()
-    return np.array([*counts, *sums], dtype=float)
+    success, crash, out, late = (float((outcomes == each).mean()) for each in Outcome if each != Outcome.FLYING)
+    took, burnt = (float(each[landed].mean()) if landed.any() else None for each in (seconds, env.fuel[measured]))
+    earned, switched = float(returns[measured].mean()), float(switches[measured].sum() / seconds.sum())
+    return Evaluation(len(outcomes), success, crash, out, late, earned, took, burnt, switched)
 
 
 def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random") -> Evaluation:
@@ -181,7 +168,7 @@ def flights(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
     env = LanderEnv(episodes, seed, spawn, frame_skip)
     env.reset()
-    return Evaluation.of((yield from flown(pilot, env)))
+    return (yield from flown(pilot, env))
 
 
 class LanderTask(Task[Evaluation]):
@@ -221,7 +208,7 @@ class LanderTask(Task[Evaluation]):
         if beside:
             rng, hard = np.random.default_rng(seed), np.arange(env.num_envs) >= episodes
             env.place(hard, np.array([SPAWNS["hard"](rng) for _ in range(beside)]))
-        score = Evaluation.of((yield from flown(pilot, env, slice(episodes))))
+        score = yield from flown(pilot, env, slice(episodes))
         return replace(score, hard=float((env.outcome[hard] == Outcome.LANDED).mean())) if beside else score
 
 
@@ -243,7 +230,7 @@ class AnywhereTask(LanderTask):
     def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[Evaluation]:
         env = AnywhereEnv(episodes, seed, "random", frame_skip or self.config.frame_skip, sites=tuple(SITES))
         env.reset()
-        return Evaluation.of((yield from flown(pilot, env)))
+        return (yield from flown(pilot, env))
 
 
 def _action_chances(config: Config) -> Doubles:

@@ -12,7 +12,7 @@ from ai.files import brief
 from ai.lander.environment import LanderEnv
 from ai.pilots.folder import Measured, PilotFolder
 from ai.pilots.own import MeasuredPilot, OwnPilot
-from ai.training.tasks import Evaluation, flown
+from ai.training.tasks import flown
 from game.core import texts
 from game.flight import networks
 
@@ -68,7 +68,7 @@ def measure(user_dir: Path, path: Path) -> Generator[list[Any], None, None]:
                 next(trial)
                 yield [float(env.time.max()) / env.limits.time]  # the last flights take their time
             except StopIteration as done:
-                score = Evaluation.of(done.value)
+                score = done.value
     result = Measured(path.stem, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(began, 3))
     PilotFolder(user_dir).keep(result)
     yield [1.0]

@@ -17,6 +17,7 @@ from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
+from ai.training.upbringing import Asked
 from game.core import texts
 from game.core.shelf import Collection, LibraryError
 from game.core.worker import Worker, WorkerState
@@ -31,7 +32,7 @@ AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", Lesson: "lesson",
-    Confusion: "confusion",
+    Confusion: "confusion", Asked: "asked",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
     (Progress, DigitProgress, Checkpoint, Validation, SettingChange), "history"
@@ -51,7 +52,7 @@ class TrainingRun:
 
     Attributes:
         config, seed: of the run.
-        swarm_state, network_state, lesson, confusion: the latest message of each kind.
+        swarm_state, network_state, lesson, confusion, asked: the latest message of each kind.
         swarms, networks: those of the whole run, as far as they were kept.
         earlier: curves of the run before it, if it had any.
         begun: whether a run has reported its configuration since this was last set to False.
@@ -63,7 +64,7 @@ class TrainingRun:
 
     def __init__(self, kind: RunKind, collection: Collection[Any], *, keeps: bool = True) -> None:
         self.kind, self.collection, self.keeps = kind, collection, keeps
-        self.pace = len(PACES) - 1
+        self.pace = PACES[-1]
         self._worker: Worker | None = None
         self._next: tuple[Any, int, Path | None] | None = None  # the waiting run's configuration, seed and source
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
@@ -84,6 +85,7 @@ class TrainingRun:
         self.network_state: NetworkState | None = None
         self.lesson: Any = None
         self.confusion: Confusion | None = None
+        self.asked: Asked | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.steps, self.stopping = 0, False  # 0 before it has reported them, or without end
         self.test: float | None = None  # accuracy on the test images, of digits that were measured
@@ -173,7 +175,7 @@ class TrainingRun:
             self._notes.append(str(error))
         self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume)
         self._worker.patience = self.kind.patience
-        self._worker.set_pace(PACES[self.pace])
+        self._worker.set_pace(self.pace)
 
     def stop(self) -> None:
         """End the run, save its network and measure it. A second call ends it without that."""
@@ -290,10 +292,10 @@ class TrainingRun:
         """Go on with both."""
         self._order(Worker.resume, both=True)
 
-    def set_pace(self, index: int) -> None:
-        """Choose one of `PACES` for both, by its index."""
-        self.pace = index
-        self._order(lambda worker: worker.set_pace(PACES[index]), both=True)
+    def set_pace(self, pace: float | None) -> None:
+        """Let both take so many turns a second; None for as many as they can."""
+        self.pace = pace
+        self._order(lambda worker: worker.set_pace(pace), both=True)
 
     # The experiment
 

@@ -153,11 +153,6 @@ class PathPreview:
         self._drifts = False
         self.ask(network)
 
-    @property
-    def asks(self) -> bool:
-        """Whether a network's path is previewed too."""
-        return self.forecast is not None
-
     def ask(self, network: Policy | None) -> None:
         """Preview this network's path from here on; with None, only the path without input."""
         self.forecast = Preview(self._flight.env, network) if network else None

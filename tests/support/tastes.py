@@ -4,8 +4,7 @@ import numpy as np
 
 from ai.lander.environment import Outcome
 from ai.training.preferences import SUMS
-from ai.training.taste_session import Asked
-from ai.training.upbringing import Flight
+from ai.training.upbringing import Asked, Flight
 from game.scenes.taste.scene import TasteScene
 from game.ui.context import Context
 
@@ -20,7 +19,7 @@ def flight(towards: float = 0.0, outcome: Outcome = Outcome.LANDED, decisions: i
 def asked(answers: int = 0) -> Asked:
     """Return a question after so many answers."""
     liking = np.linspace(-3.0, 3.0, len(SUMS)) * (answers > 0)
-    return Asked(answers, (flight(), flight(9.0, Outcome.CRASHED, 60)), liking, np.ones(len(SUMS)))
+    return Asked(answers, (flight(), flight(9.0, Outcome.CRASHED, 60)), liking)
 
 
 def raised(context: Context) -> TasteScene:

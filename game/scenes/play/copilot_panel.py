@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import pygame
@@ -9,7 +10,8 @@ import pygame
 from ai.agent.decision import Decision
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import LINE, NET, SMALL
 from game.explain.landings import draw_landings
 from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.explain.readouts import draw_share
@@ -19,7 +21,7 @@ from game.flight.foresight import SixFutures
 from game.flight.networks import flew, word
 from game.ui.listing import shortened
 
-_SIZE: Final = (280.0, 388.0)
+_SIZE: Final = (280.0, 366.0)
 _TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
 _LEFT: Final = 20  # left edge of the content, from the panel's corner
 _WIDTH: Final = _SIZE[0] - 40
@@ -34,7 +36,7 @@ class CopilotPanel:
         shown: whether there is something to explain.
         values: the Q-values of the decision that is flown, while the network has the stick; else None.
         lands: whether it lands after each action, as far as that is known.
-        why: whose action is flown, and why: a title and two lines.
+        why: lines that say why it is flown.
 
     """
 
@@ -43,7 +45,7 @@ class CopilotPanel:
         self.values: QValues | None = None
         self.lands: list[bool | None] = []
         self.flown = 0
-        self.why: tuple[str, ...] = ("", "", "")
+        self.why: Sequence[str] = ()
 
     def follow(self, flight: Flight[Crew], futures: SixFutures | None = None) -> None:
         """Update the panel after a step."""
@@ -53,11 +55,8 @@ class CopilotPanel:
         alone = flight.chooser.hand is StickHolder.NETWORK and isinstance(decision, Decision)
         self.values = QValues.of(decision) if alone and isinstance(decision, Decision) else None
         self.shown = self.values is not None or futures is not None
-        if self.values and isinstance(decision, Decision):
-            self.why = (texts.COPILOT_PANEL_ALONE, *decision_words(decision))
-        elif futures:
-            self.lands = futures.lands
-            self.why = ("" if flight.chooser.shared else texts.SIX_FUTURES_WHY, "", "")
+        self.why = decision_words(decision) if self.values and isinstance(decision, Decision) else ()
+        self.lands = futures.lands if futures else self.lands
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         view, (width, height) = canvas.view, _SIZE
@@ -81,12 +80,8 @@ class CopilotPanel:
         else:
             draw_landings(canvas, self.lands, self.flown, left, top + _VALUES, _WIDTH, flew(network))
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
-        self._draw_why(canvas, left, top + _WHY + 26)
+        rows = Cursor(left, top + _WHY + 8, _WIDTH, canvas.scale, canvas)
+        for line in self.why:
+            rows.aside(line)
         if share is not None:
-            draw_share(canvas, left, top + _WHY + 104, _WIDTH, share, flew(network))
-
-    def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
-        title, *lines = self.why
-        canvas.text(title, (left, top), colour=INK, room=_WIDTH)
-        for number, line in enumerate(lines):
-            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
+            draw_share(canvas, left, box.bottom - 30, _WIDTH, share, flew(network))

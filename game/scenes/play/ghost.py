@@ -25,8 +25,7 @@ from game.world.paths import Trails
 
 Named = str | Callable[[], str]  # a name, or what says it in the player's language
 _FIRE: Final = 0.5  # share of full thrust drawn, so that a ghost's flame is not mistaken for the player's
-_BODY, _RIM = 0.30, 0.9  # opacity of a ghost's body, and of its rim
-_FADED: Final = 0.55  # factor on both, once it has crashed
+_SEEN, _FADED = 150, 80  # of 255: opacity of a ghost, and of one that has crashed
 _SHADE: Final = (102, 102, 102)  # two fifths of 255: a ghost keeps that share of the lander's colours
 _TINT: Final = tuple(round(0.6 * level) for level in NET)  # the other three fifths are the network's blue
 _FINEST: Final = 64.0  # pixels per metre of its picture, which is translucent and costs a new one at every angle
@@ -69,7 +68,7 @@ class Ghost:
         self._trail.draw(canvas, view, 0, ClearArea.head)
 
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
-        """Draw the ghost as a translucent shape with a blue rim, or a mark at the edge towards one outside the view."""
+        """Draw the ghost as a translucent blue shape, or a mark at the edge towards one outside the view."""
         flight = self.flight
         pose = flight.poses.at(alpha)[0]
         if not flight.over and flight.env.fired[0] >= 3:
@@ -98,29 +97,9 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
 
 @lru_cache(maxsize=192)
 def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
-    """Return a translucent picture of the lander in shades of blue, with a bright outline."""
+    """Return a translucent picture of the lander in shades of blue."""
     phantom = art.painted(pixels_per_metre, degrees, halves, art.LANDER).copy()
-    cover = pygame.surfarray.array_alpha(phantom)
-    grown = cover.copy()
-    sides = (
-        (np.s_[1:], np.s_[:-1]),
-        (np.s_[:-1], np.s_[1:]),
-        (np.s_[:, 1:], np.s_[:, :-1]),
-        (np.s_[:, :-1], np.s_[:, 1:]),
-    )
-    for _ in range(max(1, round(pixels_per_metre / 24))):
-        inner = grown.copy()
-        for to, of in sides:
-            np.maximum(grown[to], inner[of], out=grown[to])
-    rim = grown - cover  # never negative, as the dilated mask contains the mask
     phantom.fill(_SHADE, special_flags=pygame.BLEND_RGB_MULT)
     phantom.fill(_TINT, special_flags=pygame.BLEND_RGB_ADD)
-    colour, edge = pygame.surfarray.pixels3d(phantom), rim.nonzero()
-    shade = colour[edge].astype(np.float32)
-    colour[edge] = shade + rim[edge][:, None] / np.float32(255) * (np.array(NET, np.float32) - shade)
-    del colour
-    alpha = pygame.surfarray.pixels_alpha(phantom)
-    strength = np.arange(256) * (_FADED if wrecked else 1.0)  # by how much of a pixel is covered
-    alpha[:] = np.maximum((_BODY * strength).astype(np.uint8)[cover], (_RIM * strength).astype(np.uint8)[rim])
-    del alpha
+    phantom.fill((255, 255, 255, _FADED if wrecked else _SEEN), special_flags=pygame.BLEND_RGBA_MULT)
     return phantom

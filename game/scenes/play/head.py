@@ -16,12 +16,11 @@ import pygame
 from game.core import texts
 from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
+from game.drawing.tokens import INK, MARGIN, MUTE, SMALL, TEXT, Colour
 from game.explain.readouts import Lamp
 from game.flight.credit import ASSISTS
 from game.flight.networks import titled
 from game.input.bindings import Command
-from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
 from game.ui.hints import Hint, HintRow, flight_hints, split
 
@@ -36,10 +35,6 @@ _NARROW: Final = 860.0  # points of a window in which keys stand above names
 _SENTENCE: Final = 18.0
 _WIDEST: Final = 620.0  # points of a line of it
 _LINE: Final = 29.0  # from one row of keys to the next
-_DOTS, _APART = 30.0, 28.0  # in the legend of the paths: before words, and after them
-_PITCH: Final = 7.0  # points from rung to rung
-_LOWEST, _HIGHER = 5.0, 0.7  # points of the lowest rung, and more for each above it
-LADDER: Final = _PITCH * COUNT  # points of the ladder's picture
 
 
 @dataclass
@@ -50,13 +45,11 @@ class Head:
         sentence: the one sentence; with `lamp` before it, and a mark if it warns.
         lamp: shape, colour and glow of who flies; None for none.
         caption, name: the kind of flight, and its name.
-        rung: place on the ladder of starts, drawn beside the caption; None off it.
         aside: what else is to be known of it.
         hints: the keys at the right.
         controls: the keys of the craft, below the sentence.
-        paths: legend of the dotted paths, their words and colours.
-        help: the three words of help, and what they mean now; None where nobody can help.
-        panel: a panel at the right, which the sentence keeps clear of; None for none.
+        help: the three words of help, the keys that choose one, and what it means; None where nobody can help.
+        panel: a panel at the right, which the words keep clear of; None for none.
 
     """
 
@@ -65,12 +58,11 @@ class Head:
     lamp: Lamp | None = None
     caption: str = ""
     name: str = ""
-    rung: int | None = None
     aside: Sequence[str] = ()
     hints: Sequence[Hint] = ()
     controls: Sequence[Hint] = ()
-    paths: Sequence[tuple[str, Colour]] = ()
     help: HelpWords | None = None
+    keys: str = ""
     means: Now = field(default=str)
     panel: pygame.FRect | None = None
 
@@ -86,7 +78,7 @@ class Head:
         """Return where each word of help can be pressed."""
         layout = _Layout(self, canvas, drawn=False)
         layout.write()
-        return self.help.boxes(canvas, canvas.view.centerx, layout.help_line) if self.help else {}
+        return self.help.boxes(canvas, layout.middle, layout.help_line) if self.help else {}
 
 
 class _Layout:
@@ -96,7 +88,8 @@ class _Layout:
         self.side = max(min(MARGIN, _SIDES * view.width), 12.0)
         self.narrow = view.width < _NARROW
         self.beside = view.width - 2 * self.side if self.narrow else 0.36 * view.width  # room of names, and of keys
-        self.help_line = 0.0
+        self.right = head.panel.left - 16 if head.panel else view.right
+        self.middle, self.help_line = (view.left + self.right) / 2, 0.0
 
     def cursor(self, left: float, y: float, width: float, size: float, colour: Colour = INK) -> Cursor:
         return Cursor(left, y, width, self.canvas.scale, self.canvas if self.drawn else None, size=size, colour=colour)
@@ -122,9 +115,6 @@ class _Layout:
             return 0.0
         cursor = self.cursor(self.canvas.view.left + self.side, max(top, _TOP), self.beside, SMALL, MUTE)
         if head.caption:
-            end = cursor.left + cursor.measured(head.caption) + 12
-            if head.rung is not None and self.drawn and end + LADDER < cursor.right:
-                draw_ladder(self.canvas, end, cursor.baseline, head.rung)
             cursor.text(head.caption)
         if head.name:
             cursor.styled(head.name, TEXT, INK)
@@ -133,41 +123,25 @@ class _Layout:
         return cursor.y
 
     def _middle(self, top: float, beside: float) -> float:
-        head, view, canvas = self.head, self.canvas.view, self.canvas
-        room = min(_WIDEST, view.width - 2 * max(self.side + 24, beside + 24))
-        cursor = self.cursor(view.centerx - room / 2, top, room, _SENTENCE)
+        head, canvas, reach = self.head, self.canvas, 0.0 if self.head.panel else beside
+        room = min(_WIDEST, self.right - canvas.view.left - 2 * max(self.side + 24, reach + 24))
+        cursor = self.cursor(self.middle - room / 2, top, room, _SENTENCE)
         if head.sentence:
-            beside_panel = self._beside_panel(cursor)
-            self._write_sentence(beside_panel)
-            cursor.gap(beside_panel.y - cursor.y)
+            self._write_sentence(cursor)
         if head.controls:
             row = HintRow(head.controls, (0, 0), size=TEXT)
-            left = view.centerx - row.width(canvas) / 2
+            left = self.middle - row.width(canvas) / 2
             cursor.gap(6)
             if self.drawn:
                 replace(row, position=(left, cursor.y + TEXT)).draw(canvas)
             cursor.gap(LEADING * TEXT)
-        if head.paths:
-            cursor.gap(4)
-            self._write_paths(cursor)
         if head.help:
             cursor.gap(12)
             self.help_line = cursor.y + SMALL
             if self.drawn:
-                head.help.draw(canvas, view.centerx, self.help_line, head.means)
+                head.help.draw(canvas, self.middle, self.help_line, head.means, head.keys)
             cursor.gap(LEADING * SMALL + 6)
         return cursor.y
-
-    def _beside_panel(self, cursor: Cursor) -> Cursor:
-        """Return a place for the sentence at the left of the panel, where it would reach into that."""
-        panel, top = self.head.panel, cursor.y
-        lines = Cursor(cursor.left, top, cursor.width, self.canvas.scale, None, size=_SENTENCE)
-        lines.text(self.head.sentence)
-        half = min(lines.measured(self.head.sentence), cursor.width) / 2
-        if panel is None or lines.y <= panel.top or cursor.left + cursor.width / 2 + half + 8 <= panel.left:
-            return cursor
-        left, right = self.canvas.view.left + self.side + 24, panel.left - 16
-        return self.cursor(left, top, right - left, _SENTENCE)
 
     def _write_sentence(self, cursor: Cursor) -> None:
         head, canvas = self.head, self.canvas
@@ -181,28 +155,6 @@ class _Layout:
             canvas.glow(spot, 16, tint, glow)
             canvas.marker(shape, spot, 8 if shape == "circle" else 11, tint)
 
-    def _write_paths(self, cursor: Cursor) -> None:
-        small = cursor.in_style(SMALL, MUTE)
-        widths = [small.measured(words) + _DOTS for words, _ in self.head.paths]
-        whole = sum(widths) + _APART * (len(widths) - 1)
-        across = whole <= cursor.width
-        x = cursor.left + (cursor.width - (whole if across else max(widths))) / 2
-        for (words, colour), width in zip(self.head.paths, widths, strict=True):
-            if self.drawn:
-                for number in range(3):
-                    self.canvas.dot((x + 4 + 8 * number, cursor.y + 0.62 * SMALL), 1.5, colour)
-                self.canvas.text(words, (x + _DOTS, cursor.y + SMALL), size=SMALL, colour=MUTE)
-            x += width + _APART if across else 0.0
-            cursor.gap(0.0 if across else LEADING * SMALL)
-        cursor.gap(LEADING * SMALL if across else 0.0)
-
-
-def draw_ladder(canvas: Canvas, left: float, baseline: float, rung: int) -> None:
-    """Draw the ladder from `left`; of a player at its top, all rungs are lit."""
-    for number in range(COUNT):
-        x, top = left + number * _PITCH, baseline - _LOWEST - _HIGHER * number
-        canvas.line((x, baseline), (x, top), HUMAN if number <= rung else FAINT, 2.0)
-
 
 def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     """Return the words of a flight: all while there is time to read, which `whole` says, or the sentence."""
@@ -210,14 +162,14 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     free, said = flown.challenge.rules.free, words.sentence
     waits, lamp = flown.waiting and not flight.over, flown.interventions.lamp(flight)
     helps = flown.help_words if flown.helps and not flight.over else None
-    means = partial(_means, flown)
+    means, chosen = partial(_means, flown), " ".join(map(controls.word, (Command.SLOWER, Command.FASTER)))
     if not (waits or whole or flight.over):
         usual = sentence(flight, flown.credit, flown.interventions.word, controls)
         sentence_now, warns = (said, False) if said else usual
         shown = helps if flown.help_words.shown else None
         panel = flown.copilot_panel.box(flown.context.reading()) if flown.thinks else None
         caption = words.line if words.next else ""  # how far the tutorial is
-        return Head(sentence_now, warns, lamp, caption, hints=hints, help=shown, means=means, panel=panel)
+        return Head(sentence_now, warns, lamp, caption, hints=hints, help=shown, keys=chosen, means=means, panel=panel)
     if flown.ending.shown and not whole:
         return Head(hints=hints)
     caption, name = words.title, words.line
@@ -226,31 +178,22 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
         name = name or network
     elif network and flown.challenge.rules.elsewhere:
         caption = texts.DIAL_JOIN.join((caption, network))
-    head = Head(caption=caption, name=name, rung=rung_of(flight), aside=_asides(flown, words), hints=hints)
-    if flight.over:
-        return replace(head, sentence=said or "")
-    if not waits:
-        return replace(head, sentence=flown.credit.header, lamp=lamp)
+    head = Head(said or "", caption=caption, name=name, aside=_asides(flown, words), hints=hints)
+    if flight.over or not waits:
+        return head
     opening = words.opening
     if flown.begun:
         opening = texts.TUTORIAL_LET_GO if flown.stuck else texts.WAITS_AGAIN
     keys = flight_hints(controls) if (opening or free) and said is None else []
-    guided = [(texts.PATH_NETWORK.format(who=flown.credit.who), NET)] if flown.path_preview.asks else []
-    paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and free else []
-    return replace(head, sentence=said or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
+    return replace(head, sentence=said or opening, lamp=lamp, controls=keys, help=helps, keys=chosen, means=means)
 
 
 def _asides(flown: FlownFlight, words: Words) -> list[str]:
     flight, credit = flown.flight, flown.credit
-    off = flown.helps and flown.helped.help == "off" != flown.context.settings.help
-    before, controls = not (flown.begun or flight.over), flown.context.controls
-    more = texts.TUTORIAL_WHEEL if controls.mouse_in_use else controls.word(Command.FASTER)
-    beside = flown.ghost and words.goal and not flight.over
     lines = [
-        texts.HELP_NOT_HERE.format(more=more) if off and flown.challenge.rules.kept and before else "",
         credit.header if credit.alone and not flight.over else "",
         credit.notice or words.goal,
-        texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and beside else "",
+        texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and words.goal and not flight.over else "",
         *surroundings(flight.env),
     ]
     return [line for line in lines if line]

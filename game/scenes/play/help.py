@@ -58,11 +58,12 @@ class HelpWords:
             x += width + _APART
         return found
 
-    def draw(self, canvas: Canvas, middle: float, y: float, says: Now) -> None:
-        """Draw the words, with a line under the one that is chosen; `says` tells what that does now."""
+    def draw(self, canvas: Canvas, middle: float, y: float, says: Now, keys: str) -> None:
+        """Draw the words behind their keys, with a line under the chosen one; `says` tells what that does now."""
         now, boxes = self._settings.help, self.boxes(canvas, middle, y)
         (first, *others) = boxes.values()
         canvas.explain(first.unionall(others), texts.HELP_MEANS[now], says)  # so that no tooltip covers a word
+        canvas.text(keys, (first.left, y), size=SMALL, colour=INK, align="right", weight="medium")
         for word, box in boxes.items():
             colour = INK if word == now else MUTE
             canvas.text(texts.HELP[word], (box.centerx, y), size=SMALL, colour=colour, align="centre")

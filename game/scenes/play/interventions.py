@@ -12,16 +12,14 @@ from game.drawing.tokens import HUMAN, NET
 from game.explain.readouts import Lamp
 from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
-from game.scenes.play.words import changed_by, is_late
+from game.scenes.play.words import changed_by
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
 
-_LASTS: Final = 75  # steps that a message stays after the last override: long enough to be read
-_FADES: Final = 14  # steps that the lamp shows it
+_LASTS: Final = 75  # steps that a sentence stays: long enough to be read
+_FADES: Final = 14  # steps that the lamp shows an override
 _CALM: Final = 60  # steps without a change after which another one counts anew
-_TOO_LATE: Final = 20  # decisions in a row from which on there is no more to be said of that
-_LATE: Final = 3  # decisions in a row that come too late, from which on that is said
 
 
 class Interventions:
@@ -36,41 +34,38 @@ class Interventions:
     def __init__(self) -> None:
         self.moments: list[Doubles] = []
         self.throughout = -1.0  # before the first step
-        self._since, self._calm = _LASTS + _FADES, _CALM
-        self._word = self._said = ""
+        self._since, self._ago, self._calm = _FADES, _LASTS, _CALM  # steps since the lamp, a sentence, a change
+        self._word = ""
         self._decision: SharedDecision | None = None  # the latest
-        self._late = 0  # decisions in a row, up to it, for which a guardian had not looked ahead in time
 
     def follow(self, flight: Flight[Crew]) -> None:
-        guards, seen = flight.chooser.shared and flight.choice.guarded, self.word
-        guarded = flight.choice.together if guards else None
+        choice, guard = flight.choice, flight.chooser.guard
+        guarded = choice.together if flight.chooser.shared and choice.guarded else None
         assist = guarded.assist if guarded else 0.0
         self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
-        guard = flight.chooser.guard
-        changed = flight.choice.overridden and (not guards or guard is None or guard.saves)
+        changed = choice.overridden and (guarded is None or guard is None or guard.saves)
         if changed and self._calm >= _CALM:
             self.moments.append(flight.env.position[0].copy())
         self._calm = 0 if changed else self._calm + 1
-        self._since = 0 if flight.choice.overridden else self._since + 1
-        if flight.choice.together is not self._decision:
-            self._decision = flight.choice.together
-            self._said = changed_by(guarded) if guarded else ""
-            self._late = self._late + 1 if guarded and is_late(guarded) else 0
-        if flight.choice.overridden and (0 < self._late < _LATE or self._late > _TOO_LATE):
-            self._word = seen if self._late < _LATE else ""
-        elif flight.choice.overridden:
-            self._word = self._said or difference(flight.choice.asked.action, flight.choice.push.action)
-        elif self._said:
-            self._word, self._since = self._said, min(self._since, _FADES + 1)
+        self._since = 0 if choice.overridden else self._since + 1
+        self._ago += 1
+        said = ""
+        if guarded is None:
+            said = difference(choice.asked.action, choice.push.action) if choice.overridden else ""
+        elif guarded is not self._decision:
+            said = changed_by(guarded)
+        self._decision = guarded
+        if said:
+            self._word, self._ago = said, 0
 
     def forget(self) -> None:
         """Leave out what was said last, in another language."""
-        self._since = _LASTS
+        self._ago = _LASTS
 
     @property
     def word(self) -> str:
         """What the co-pilot has just changed, in one sentence; empty once that is long enough ago to have been read."""
-        return self._word if self._since < _LASTS else ""
+        return self._word if self._ago < _LASTS else ""
 
     @property
     def counted(self) -> str:

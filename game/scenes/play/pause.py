@@ -1,4 +1,4 @@
-"""Pause: a column of entries over a scene that stands still; over a flight, with all that can be known of it."""
+"""Pause: entries over a scene that stands still; over a flight, with all that can be known of it."""
 
 from __future__ import annotations
 
@@ -29,10 +29,9 @@ if TYPE_CHECKING:
     from game.ui.panel import Panel
     from game.ui.widget import OnPress
 
-_WORD: Final = 20.0
+_TITLE, _WORD = 28.0, 20.0
 _COLUMN: Final = 90.0  # points that a column of entries needs
-_LOW: Final = 420.0  # points of a low window
-_EDGE: Final = 12.0  # points between the panel and the edge of the window
+_AROUND, _EDGE = 24.0, 12.0  # points between rows and the panel's sides, and from there to the edge of the window
 _COVER: Final = 0.94  # opacity: the Earth does not shine through the words
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
@@ -43,8 +42,8 @@ class PauseScene(PanelScene):
     Args:
         below: the paused scene.
         retry: function that restarts the scene below; None for no such entry.
-        retry_word: what that entry says; called each time the column is built.
-        more: function that returns further entries and their actions; called each time the column is built.
+        retry_word: what that entry says; called each time the rows are described.
+        more: function that returns further entries and their actions; called each time the rows are described.
 
     """
 
@@ -68,21 +67,14 @@ class PauseScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        self.describe_head(panel)
+        panel.title(texts.PAUSE_TITLE, _TITLE, "extralight")
         retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
         rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
-        self.describe_entries(panel, rows)
-
-    def describe_head(self, panel: Panel) -> None:
-        """Add what stands above the entries."""
-        panel.title(texts.PAUSE_TITLE, 36.0, "extralight")
-        panel.gap(8)
-
-    def describe_entries(self, panel: Panel, rows: Sequence[tuple[str, OnPress]]) -> None:
-        """Add the entries."""
-        for label, press in rows:
-            panel.button(label, press, size=_WORD, weight="light", colour=INK)
+        half = (len(rows) + 1) // 2  # in two columns, to be in sight in any window
+        for column, part in zip(panel.beside((1, 1), _COLUMN, 24.0), (rows[:half], rows[half:]), strict=True):
+            for label, press in part:
+                column.button(label, press, size=_WORD, weight="light", colour=INK)
 
     def actions(self) -> Table:
         return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, texts.HINT_RESUME)]
@@ -103,8 +95,6 @@ class FlightPauseScene(PauseScene):
     is not offered.
     """
 
-    most = 320.0
-
     def __init__(self, context: Context, below: PlayScene) -> None:
         self._flight = below
         self.explained = Explained()
@@ -112,37 +102,25 @@ class FlightPauseScene(PauseScene):
 
     def describe(self, panel: Panel) -> None:
         super().describe(panel)
-        flown, rules = self._flight.flown, self._flight.challenge.rules
-        panel.gap(6)
+        panel.add(self._write_about)
+        flown, settings = self._flight.flown, self.context.settings
         if flown.helps:
             now = HELP.index(flown.helped.help)
             panel.choice(texts.CHOICES_HELP, [texts.HELP[word] for word in HELP], now, self._choose_help)
             panel.aside(lambda: self._flight.lack or texts.HELP_MEANS[flown.helped.help])
-        if rules.free:
-            self._describe_starts(panel, begun=flown.begun)
+        if self._flight.challenge.rules.free:
+            pads = texts.CHOICES_PADS_WORDS
+            panel.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), self._choose_pads)
+            if not settings.three_pads:  # among hills, all begin from anywhere
+                rung, rungs = max(0.0, settings.rung), (0.0, float(TOP_RUNG))
+                panel.slider(texts.CHOICES_LADDER, rung, rungs, self._choose_rung, step=1.0, figure=_rung)
+            if flown.begun:
+                panel.aside(texts.CHOICES_LATER)
         if self._flight.words.next:
             panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
         elif not flown.credit.alone:
-            panel.button(texts.PAUSE_NETWORK.format(name=networks.word(self._flight.network.name)), self._open_networks)
-
-    def describe_entries(self, panel: Panel, rows: Sequence[tuple[str, OnPress]]) -> None:
-        half = (len(rows) + 1) // 2  # in two columns, to be in sight in any window
-        for column, part in zip(panel.beside((1, 1), _COLUMN, 24.0), (rows[:half], rows[half:]), strict=True):
-            for label, press in part:
-                column.button(label, press, size=_WORD, weight="light", colour=INK)
-
-        panel.add(lambda cursor: self._write_about(cursor) if self._low else None)
-
-    def describe_head(self, panel: Panel) -> None:
-        title, low_title = 36.0, 22.0
-        panel.add(lambda cursor: cursor.styled(texts.PAUSE_TITLE, low_title if self._low else title, INK, "extralight"))
-        panel.add(lambda cursor: None if self._low else self._write_about(cursor))
-        panel.add(lambda cursor: cursor.gap(0 if self._low else 8))
-
-    @property
-    def _low(self) -> bool:
-        """Whether the window is so low that the entries come first, to be in sight."""
-        return self.context.reading().view.height < _LOW
+            choose = partial(push, "runs", choose=self._flight.choose_network)
+            panel.button(texts.PAUSE_NETWORK.format(name=networks.word(self._flight.network.name)), choose)
 
     def _write_about(self, cursor: Cursor) -> None:
         """Write which flight it is, and what is to be known of it."""
@@ -152,15 +130,6 @@ class FlightPauseScene(PauseScene):
             cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
             cursor.styled(words, SMALL, MUTE)
-
-    def _describe_starts(self, panel: Panel, *, begun: bool) -> None:
-        settings, pads = self.context.settings, texts.CHOICES_PADS_WORDS
-        panel.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), self._choose_pads)
-        if not settings.three_pads:  # among hills, all begin from anywhere
-            rung, rungs = max(0.0, settings.rung), (0.0, float(TOP_RUNG))
-            panel.slider(texts.CHOICES_LADDER, rung, rungs, self._choose_rung, step=1.0, figure=_rung)
-        if begun:
-            panel.aside(texts.CHOICES_LATER)
 
     def _choose_help(self, number: int) -> None:
         self._flight.flown.helped.help = HELP[number]
@@ -174,9 +143,6 @@ class FlightPauseScene(PauseScene):
     def _choose_rung(self, rung: float) -> None:
         self.context.settings.rung = round(rung)
         self.context.apply_settings()
-
-    def _open_networks(self) -> Transition:
-        return push("runs", choose=self._flight.choose_network)
 
     def actions(self) -> Table:
         again = self.context.controls.keys.codes(Command.CHOICES)  # its button explains here
@@ -192,21 +158,17 @@ class FlightPauseScene(PauseScene):
 
     def room(self, canvas: Canvas) -> pygame.FRect:
         room = super().room(canvas)
-        return pygame.FRect(room.left, 28, room.width, min(row.top for row in self.hint_rows(canvas)) - 40)
+        return pygame.FRect(room.left, _AROUND, room.width, min(row.top for row in self.hint_rows(canvas)) - 36)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         left, width = self._between(canvas)
-        width = width if self._low else self.most
-        return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), width)
+        return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), min(width, self.most))
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._flight.flown.draw(canvas, 1.0, Head(), whole=True)
-        rows, box = self.hint_rows(canvas), self.panel.box
-        low = max(row.position[1] for row in rows) + 12
-        left = max(box.left - 24, canvas.view.left + _EDGE)
-        right = box.left + max(box.width, *(row.width(canvas) for row in rows)) + 24
-        right = min(right, canvas.view.right - _EDGE)
-        canvas.panel((left, 12, right - left, low - 12), _COVER)
+        box, low = self.panel.box, max(row.position[1] for row in self.hint_rows(canvas))
+        cover = pygame.FRect(box.left - _AROUND, _EDGE, box.width + 2 * _AROUND, low)
+        canvas.panel(cover.clip(canvas.view.inflate(-2 * _EDGE, 0)), _COVER)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.lander.sensing import near_edges
 from game.core import texts
-from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.flight import networks
 from game.flight.choosers import Crew
 from game.flight.credit import Credit
@@ -26,7 +25,6 @@ _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
 _AHEAD: Final = 0.9  # seconds of look-ahead for stopping a turn
 _TOP: Final = 3.5  # metres below the top of the area, within which to release the engine
-_LEAST_LOSS: Final = 0.05  # points below the best that are called so
 
 
 # What the pilot must know
@@ -43,8 +41,12 @@ def sentence(flight: Flight[Crew], credit: Credit, changed: str, controls: Contr
         said.append((_AT_ONCE, words.format(main=controls.word(Held.MAIN), other=controls.word(other))))
     if changed:
         said.append((_CHANGED, changed))
-    back = networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER))
-    said.append((_FLOWN_BY, credit.header if by_hand else back))
+    flies = credit.header
+    if not by_hand:
+        flies = networks.sentence(texts.NETWORK_FLIES_BACK, credit.who, key=controls.word(Command.HANDOVER))
+    elif flight.chooser.copilot and not (flight.chooser.shared or credit.alone):
+        flies = texts.YOU_FLY_HELP.format(key=controls.word(Command.FASTER))
+    said.append((_FLOWN_BY, flies))
     urgency, words = max(said)
     return words, urgency in (_AT_ONCE, _WARNED)
 
@@ -93,13 +95,8 @@ def dangers(env: LanderEnv) -> Iterator[str]:
         yield texts.EDGE_ENDS.format(where=texts.AND.join(ahead))
     if 0 < start - time < _SOON:
         yield texts.ENGINE_FAILS.format(seconds=start - time)
-    left = conditions.tank - float(env.fuel[0])
-    if left <= 0:
+    if env.fuel[0] >= conditions.tank:
         yield texts.TANK_EMPTY
-    elif left < LITTLE_FUEL * conditions.tank:
-        yield texts.TANK_LOW.format(seconds=left)
-    if env.limits.time - time < LITTLE_TIME:
-        yield texts.TIME_SHORT.format(seconds=max(0.0, env.limits.time - time))
 
 
 def surroundings(env: LanderEnv) -> Iterator[str]:
@@ -138,7 +135,7 @@ def dial_words(assist: float, problem: str = "") -> str:
 
 
 def changed_by(decision: SharedDecision) -> str:
-    """Say in one sentence what a guardian has just changed; empty where it has changed nothing."""
+    """Say in one sentence what a guardian has just changed; empty where it has changed nothing, or only waits."""
     from ai.copilot.futures import DECISION_STEPS
     from ai.copilot.guardian import decisions_of
     from ai.lander.push import KEYS
@@ -150,14 +147,11 @@ def changed_by(decision: SharedDecision) -> str:
         lost = all(key in known for key in KEYS) and not any(future.plan for future in known.values())
         return texts.GUARDIAN_LOST if lost else ""
     future, seconds = known.get(decision.asked[0]), decisions_of(decision.assist) * DECISION_STEPS * DT
-    after = "unknown" if future is None else "lost" if future.plan is None else "lands" if future.passes else "briefly"
+    if future is None:
+        return ""
+    after = "lost" if future.plan is None else "lands" if future.passes else "briefly"
     name = texts.said(ACTION_NAMES[int(decision.pilot[0])])
     return texts.GUARDIAN_SAVED[after].format(asked=name, seconds=f"{seconds:.1f}")
-
-
-def is_late(decision: SharedDecision) -> bool:
-    """Whether a guardian has changed what was asked for because that had not been flown ahead in time."""
-    return bool(decision.overridden[0]) and not (decision.known and decision.asked[0] in decision.known[0])
 
 
 def why_not_saved(flight: Flight[Crew]) -> str:

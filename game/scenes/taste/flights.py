@@ -15,10 +15,10 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import INK, LINE, MUTE, NIGHT0, SMALL
-from game.scenes.taste.run import PACE
 from game.ui.widget import RowWidget
 from game.world.swarm import LearningSwarm
 
+PACE: Final = 45.0  # decisions a second: three times as fast as life
 _GAP: Final = 12.0  # points between them
 
 
@@ -46,7 +46,7 @@ class Small:
 
 
 class Pair:
-    """The two flights of a question.
+    """The two flights of a question, and where they are in the course of it.
 
     Attributes:
         question: what is asked; None while nothing is.
@@ -69,47 +69,19 @@ class Pair:
         self._at = 0.0
         for half in self.halves:
             half.swarm.clear()
-        self._take(0)
 
     def update(self, still: bool) -> None:
         """Advance by 1/60 s."""
-        before = int(self._at)
-        self._at += PACE / 60
-        if int(self._at) != before:
-            self._take(int(self._at))
-        for half in self.halves:
-            half.swarm.update(still)
-
-    def _take(self, at: int) -> None:
         for half, flight in zip(self.halves, self.question or (), strict=False):
-            last = len(flight.actions)
-            if at <= last:
+            seen, at = half.swarm.swarm_state, min(int(self._at), len(flight.actions))
+            if seen is None or seen.decisions != at:
                 half.swarm.take(_seen(flight, at))
+            half.swarm.update(still)
+        self._at += PACE / 60
 
     def over(self, side: int) -> bool:
         """Whether a flight has come to its end."""
         return self.question is not None and self._at >= len(self.question[side].actions)
-
-    def place(self, box: pygame.FRect) -> None:
-        """Move to a box."""
-        wide = (box.width - _GAP) / 2
-        for number, half in enumerate(self.halves):
-            half.place(pygame.FRect(box.left + number * (wide + _GAP), box.top, wide, box.height))
-
-    def draw(self, canvas: Canvas, waits: str) -> None:
-        """Draw both, or say what is waited for."""
-        pointer = canvas.pointer
-        for side, half in enumerate(self.halves):
-            if self.question is None:
-                canvas.fill(canvas.rect(*half.box), NIGHT0)
-                canvas.text(waits, half.box.center, size=SMALL, colour=MUTE, align="centre")
-                continue
-            half.draw(canvas)
-            if self.over(side):
-                word = texts.OUTCOMES[Outcome(self.question[side].outcome).name][0]
-                canvas.text(word, (half.box.left + 12, half.box.top + 24), size=SMALL, colour=INK)
-            pointed = pointer is not None and half.box.collidepoint(pointer)
-            canvas.outline(half.box, 8, INK if pointed else LINE)
 
 
 class PairRow(RowWidget):
@@ -133,11 +105,26 @@ class PairRow(RowWidget):
                 self._answer(side)
 
     def write(self, cursor: Cursor) -> None:
-        box = cursor.take(self._height((cursor.width - _GAP) / 2))
-        if cursor.canvas is None:
-            self._pair.place(box)
-        else:
-            self._pair.draw(cursor.canvas, self._waits())
+        wide = (cursor.width - _GAP) / 2
+        box = cursor.take(self._height(wide))
+        for side, half in enumerate(self._pair.halves):
+            if cursor.canvas is None:
+                half.place(pygame.FRect(box.left + side * (wide + _GAP), box.top, wide, box.height))
+            else:
+                self._draw(cursor.canvas, side, half)
+
+    def _draw(self, canvas: Canvas, side: int, half: Small) -> None:
+        """Draw a flight, or say what is waited for."""
+        if self._pair.question is None:
+            canvas.fill(canvas.rect(*half.box), NIGHT0)
+            canvas.text(self._waits(), half.box.center, size=SMALL, colour=MUTE, align="centre")
+            return
+        half.draw(canvas)
+        if self._pair.over(side):
+            word = texts.OUTCOMES[Outcome(self._pair.question[side].outcome).name][0]
+            canvas.text(word, (half.box.left + 12, half.box.top + 24), size=SMALL, colour=INK)
+        pointed = canvas.pointer is not None and half.box.collidepoint(canvas.pointer)
+        canvas.outline(half.box, 8, INK if pointed else LINE)
 
 
 def _seen(flight: Flight, at: int) -> SwarmState:

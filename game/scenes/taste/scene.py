@@ -8,29 +8,35 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
+from ai.training.config import Config
 from ai.training.preferences import FIRST, NEITHER, SECOND, SUMS
-from ai.training.upbringing import UPBRINGING
+from ai.training.upbringing import UPBRINGING, TasteSession
 from game.core import texts
-from game.core.scene import Push, Transition, push
-from game.drawing.cursor import Cursor
-from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TITLE
+from game.core.scene import Push, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import TITLE
+from game.explain.explained import Explained
+from game.explain.tables import Line, from_zero, table
 from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
-from game.scenes.taste.flights import Pair, PairRow, Small
-from game.scenes.taste.run import Nursery, TasteRun
+from game.scenes.taste.flights import PACE, Pair, PairRow, Small
+from game.training.library import Library
+from game.training.run import TrainingRun
+from game.training.run_kind import RunKind
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
-    from game.drawing.canvas import Align
+    from game.drawing.cursor import Cursor
     from game.ui.context import Context
-    from game.ui.panel import Column, Panel
+    from game.ui.panel import Panel
 
+RAISED: Final = RunKind(TasteSession, Config, {"taste": UPBRINGING}, lambda: texts.PRESETS, first=(), knobs={})
 _MORE: Final = "taste"  # what a player can open
-_CHAPTER: Final = "pay"  # says more of what a network is paid for
+_FOLDER: Final = ".taste"  # among the player's networks, until it has a name: Train has its own place
 _LEAST: Final = 300.0  # points of a column
 _HIGH, _PAIR, _NOW = 0.5, 0.38, 0.26  # height of a picture, of its width; of the pair and the landers, of the view
-_MIDDLE, _BAR = 0.72, 0.27  # of a column's width: where bars begin, and how long they are at most, each way
+_LIKING: Final = 2.0  # what fills a bar at least
 _SEEDS: Final = 1_000_000
 
 
@@ -46,12 +52,14 @@ class TasteScene(PanelScene):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self.run = TasteRun(Nursery(context.user_dir))
-        self.pair, self.now = Pair(), Small()
+        nursery = Library(context.user_dir)
+        nursery.unsaved = nursery.folder / _FOLDER
+        self.run = TrainingRun(RAISED, nursery)
+        self.run.pace = PACE
+        self.pair, self.now, self.explained = Pair(), Small(), Explained()
         try:
-            self.run.keeps = self.run.collection.hold()
-            left = self.run.unfinished
-            self._begin(resume=left)
+            self.run.keeps = nursery.hold()
+            self._begin(resume=self.run.unfinished)
             self.build()
         except BaseException:  # nobody closes a scene that could not be built
             self.close()
@@ -66,43 +74,26 @@ class TasteScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        panel.text(lambda: self._sentence, size=TITLE)
+        panel.text(lambda: self.run.problem or texts.TASTE_ASK, size=TITLE)
         panel.gap(6)
-        self._row = panel.widget(PairRow(self.pair, self.answer, self._height, lambda: self._waits))
-        again, back = (texts.TASTE_AGAIN, self.pair.again), (texts.TASTE_BACK, self._take_back)
-        panel.words([again, back, self.unfolding(_MORE)])
+        self._row = panel.widget(PairRow(self.pair, self.answer, self._height, self._waits))
+        panel.explain(texts.TASTE_HELP["pair"])
+        panel.words([(texts.TASTE_AGAIN, self.pair.again), self.unfolding(_MORE)])
         panel.gap(6)
         if self.context.settings.is_open(_MORE):
-            self._describe_more(panel)
+            panel.words([(texts.TASTE_KEEP, self._keep), (texts.TASTE_ANEW, self._start_anew)])
+            panel.gap(6)
+            panel.aside(texts.TASTE_ASSISTANTS)
+            panel.gap(6)
         left, right = panel.beside((1, 1), _LEAST)
         left.add(lambda cursor: cursor.caption(texts.TASTE_NOW.format(count=self._answers)))
-        left.add(self._write_now)
-        right.caption(texts.TASTE_BELIEVED)
-        right.add(self._write_sides)
-        for number, name in enumerate(SUMS):
-            right.add(partial(self._write_liking, number, texts.TASTE_SUMS[name]))
-
-    def _describe_more(self, column: Column) -> None:
-        words = [
-            (texts.TASTE_KEEP, self._keep),
-            (texts.TASTE_ANEW, self._start_anew),
-            (texts.TRAIN_RUNS, self._networks),
-        ]
-        column.words(words)
-        column.gap(6)
-        column.aside(texts.TASTE_ASSISTANTS)
-        column.button(texts.LEARN[_CHAPTER]["title"], lambda: push("chapter", _CHAPTER))
-        column.gap(6)
+        left.add(self._write_now, texts.TASTE_HELP["now"])
+        right.add(table((texts.TASTE_BELIEVED, "  ←  →  ".join(texts.TASTE_SIDES)), self._likings))
 
     @property
     def _answers(self) -> int:
         return self.run.asked.answers if self.run.asked else 0
 
-    @property
-    def _sentence(self) -> str:
-        return self.run.problem or texts.TASTE_ASK
-
-    @property
     def _waits(self) -> str:
         return "" if self.run.problem else texts.TASTE_WAITS[self._answers > 0]
 
@@ -117,35 +108,18 @@ class TasteScene(PanelScene):
         else:
             self.now.draw(cursor.canvas)
 
-    def _write_sides(self, cursor: Cursor) -> None:
-        """Write which side of the bars means what."""
-        box = cursor.take(1.4 * SMALL)
-        if cursor.canvas:
-            for side, word in zip((-1, 1), texts.TASTE_SIDES, strict=True):
-                place = cursor.left + (_MIDDLE + side * _BAR) * cursor.width, box.top + SMALL
-                align: Align = "left" if side < 0 else "right"
-                cursor.canvas.text(word, place, size=SMALL, colour=MUTE, align=align)
+    def _likings(self) -> list[Line]:
+        """Return how much each sum is liked, to the right, or disliked, to the left."""
+        asked = self.run.asked
+        liking = asked.liking if asked and asked.answers else np.zeros(len(SUMS))
+        most = max(float(np.abs(liking).max()), _LIKING)
+        return [
+            Line((texts.TASTE_SUMS[name], ""), texts.TASTE_HELP["liking"], lit=bool(each),
+                 bars=(from_zero(float(each), -most, most),))
+            for name, each in zip(SUMS, liking, strict=True)
+        ]  # fmt: skip
 
-    def _write_liking(self, number: int, word: str, cursor: Cursor) -> None:
-        """Draw how much of a sum is liked, to the right, or disliked, to the left, and how sure that is."""
-        cursor.gap(1)
-        label = cursor.column(cursor.left, (_MIDDLE - _BAR) * cursor.width - 8)
-        label.styled(word, SMALL, INK)
-        if (canvas := cursor.canvas) is not None:
-            asked = self.run.asked
-            middle, half = cursor.left + _MIDDLE * cursor.width, _BAR * cursor.width
-            y = cursor.y + 0.62 * SMALL * 1.4
-            canvas.line((middle, y - 7), (middle, y + 7), FAINT)
-            if asked is not None and asked.answers:
-                most = max(float(np.abs(asked.liking).max()), 2.0)
-                liking, unsure = asked.liking[number] / most, asked.unsure[number] / most
-                ends = np.clip([liking - unsure, liking + unsure], -1, 1) * half + middle
-                canvas.line((ends[0], y), (ends[1], y), MUTE)
-                left, right = sorted((middle, middle + half * float(liking)))
-                canvas.fill(canvas.rect(left, y - 3, max(right - left, 1), 6), NET)
-        cursor.y = label.y
-
-    # Keys
+    # Events and time
 
     def actions(self) -> Table:
         """Answer by the arrows, unless they move from word to word."""
@@ -158,9 +132,9 @@ class TasteScene(PanelScene):
         words = focused is not None and focused is not self._row and focused.ringed
         return [
             *((each.hint_for(controls) for each in answers) if words else answers),
-            Action(pygame.K_BACKSPACE, self._take_back, gamepad=Command.HANDOVER),
             Action(Command.RETRY, self.pair.again),
             self.form.goes_back(texts.HINT_BACK),
+            self.explained.action(),
         ]
 
     def answer(self, answer: int) -> None:
@@ -172,10 +146,9 @@ class TasteScene(PanelScene):
             self.pair.ask(None)
             self.form.focus(self._row)
 
-    def _take_back(self) -> None:
-        self.run.ask("take_back")
-
-    # Events and time
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Go on explaining; everything else is the panel's."""
+        return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
         """Receive what the worker says, and go on flying."""
@@ -188,6 +161,7 @@ class TasteScene(PanelScene):
             self.now.swarm.take(run.swarm_state)
         self.pair.update(still)
         self.now.swarm.update(still)
+        self.explained.update()
         return super().update()
 
     def enter(self) -> None:
@@ -203,19 +177,22 @@ class TasteScene(PanelScene):
         self.run.close()
         self.run.collection.release()
 
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        super().draw(canvas, alpha)
+        self.explained.draw(canvas)
+
     # The network
 
+    @property
+    def _name(self) -> str:
+        return self.run.collection.free_name(texts.TASTE_NAME)
+
     def _keep(self) -> Transition:
-        name = self.run.collection.free_name(texts.TASTE_NAME)
-        return Push(NameDialog(self, texts.NAMING, name, self.run.save))
+        return Push(NameDialog(self, texts.NAMING, self._name, self.run.save))
 
     def _start_anew(self) -> None:
         """Bring up another; this one is put among the player's networks, if it has learned anything."""
-        problem = self.run.save(self.run.collection.free_name(texts.TASTE_NAME)) if self._answers else ""
-        if problem:
+        if problem := self.run.save(self._name) if self._answers else "":
             self.context.note(problem)
         else:
             self._begin()
-
-    def _networks(self) -> Transition:
-        return push("runs")

@@ -29,6 +29,7 @@ from game.scenes.train.rewind import Rewind
 from game.scenes.train.swarms import HEAD, Swarms
 from game.scenes.train.view import Pointer, View
 from game.training.library import Library
+from game.training.run import PACES
 from game.training.run_kind import LANDERS
 from game.ui.charts import Scrubber
 from game.ui.panel import Column
@@ -169,7 +170,7 @@ class LanderView(View):
             column.explain(helps[name])
 
     def describe_foot(self, column: Column) -> None:
-        column.choice("", texts.TRAIN_PACES, self.run.pace, self.scene.set_pace, SMALL)
+        column.choice("", texts.TRAIN_PACES, PACES.index(self.run.pace), self.scene.set_pace, SMALL)
 
     def describe_hint(self, column: Column) -> bool:
         if hint := self.advice.shown:

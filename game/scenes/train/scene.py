@@ -68,7 +68,7 @@ class TrainScene(FormScene):
         super().__init__(context, self._back)
         self.run = run = TrainingRun(view.kind, view.collection(context.user_dir))
         self._settings, self._was_running, self._frame = context.settings, False, 0
-        run.pace = 0 if self._settings.slow_runs else len(PACES) - 1
+        run.pace = PACES[0 if self._settings.slow_runs else -1]
         self._all_knobs = False  # whether the page of knobs is shown
         self._page: Hashable = False
         self.panel = Panel(self.form)
@@ -340,7 +340,7 @@ class TrainScene(FormScene):
 
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES`, for later runs too."""
-        self.run.set_pace(index)
+        self.run.set_pace(PACES[index])
         self._settings.slow_runs = index == 0
         self.context.apply_settings()
 

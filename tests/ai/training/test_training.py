@@ -170,12 +170,6 @@ def test_care_sets_in_over_the_horizon():
     np.testing.assert_allclose(held, [1.0, *np.maximum(0.5, 1 - 0.5 * np.arange(126) * 8 / 1000)])
 
 
-def test_sums_of_flights_give_their_means():
-    sums = np.array([0, 2, 2, 0, 0, 4.0, 14.0, 6.0, 10, 20.0])
-    assert Evaluation.of(sums) == Evaluation(4, 0.5, 0.5, 0.0, 0.0, 1.0, 7.0, 3.0, 0.5)
-    assert Evaluation.of(np.array([0, 0, 2, 0, 0, 0.0, 0.0, 0.0, 1, 2.0])).mean_time is None
-
-
 def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
     assert wilson(0.0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
     assert wilson(1.0, 20) == pytest.approx((0.8389, 1.0), abs=1e-4)

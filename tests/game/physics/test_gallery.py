@@ -10,6 +10,7 @@ import pytest
 
 from game.cli import add_commands
 from game.core import texts
+from game.core.scene import Route
 from game.drawing.tokens import HUMAN, NET
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import GRAVITIES, PhysicsScene
@@ -170,21 +171,6 @@ def test_f1_explains_one_thing_after_the_other(gallery: Driver):
 # Quantities
 
 
-def test_a_slider_is_dragged_and_the_exhibit_begins_anew_with_its_value(open_game: Open):
-    driver = open_game(PhysicsScene, "slopes")
-    driver.frames(10)
-    left, right = slider(driver, "degrees")._track
-    y = slider(driver, "degrees").box.centery
-    press(driver, pygame.MOUSEBUTTONDOWN, (right, y))
-    driver.move((left + 0.3 * (right - left), y))
-    press(driver, pygame.MOUSEBUTTONUP, (left + 0.3 * (right - left), y))
-    driver.frames(2)
-    exhibit = scene(driver).exhibit
-    assert exhibit.values["degrees"] == slider(driver, "degrees").value < 30
-    assert exhibit.steps < 5
-    assert np.degrees(exhibit.boxes[0].angle[0]) == pytest.approx(-exhibit.values["degrees"], abs=0.1)
-
-
 def test_a_quantity_is_changed_without_a_mouse_and_stays(open_game: Open):
     player = Player(open_game(PhysicsScene, "bounce"), "pad")
     for _ in range(12):
@@ -235,26 +221,15 @@ def test_pieces_are_walked_through_by_keys_and_chosen_with_the_mouse(open_game: 
 # The command
 
 
-def test_the_command_opens_the_exhibit_over_the_menu_and_names_those_there_are(monkeypatch, tmp_path, capsys):
-    opened: list[Driver] = []
-
-    def stay(app, stop) -> int:
-        driver = Driver(app)
-        opened.append(driver)
-        driver.frames(3)
-        assert scene(driver).chosen == "drag"
-        driver.keys(pygame.K_ESCAPE, pygame.K_UP, pygame.K_RETURN)  # Pause, Leave
-        assert driver.top_name == "MenuScene"
-        app.close()
-        return 0
-
-    monkeypatch.setattr("game.shell.app.App.run", stay)
+def test_the_command_opens_the_exhibit_and_names_those_there_are(monkeypatch, tmp_path, capsys):
+    opened = []
+    monkeypatch.setattr("game.start.play", lambda *_, begin: opened.append(begin) or 0)
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers())
     arguments = parser.parse_args(["physics", "--exhibit", "drag"])
     arguments.user_dir, arguments.full_screen = tmp_path, False
     assert arguments.run(arguments) == 0
-    assert opened
+    assert opened == [Route("physics", ("drag",))]
     with pytest.raises(SystemExit):
         parser.parse_args(["physics", "--exhibit", "trebuchet"])
     said = capsys.readouterr().err

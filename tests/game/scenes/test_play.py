@@ -245,4 +245,4 @@ def test_the_networks_way_is_drawn_if_there_is_one(begin: Open):
     driver = begin(ScriptedPilot(), 4)
     driver.frames(200)
     assert len(play(driver).flown.path_preview.forecast.path) > 5
-    assert not play(begin(None, 4)).flown.path_preview.asks
+    assert play(begin(None, 4)).flown.path_preview.forecast is None
