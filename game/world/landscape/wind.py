@@ -14,8 +14,8 @@ from game.core.clock import STEP
 from game.drawing.tokens import Colour
 from game.world.camera import View
 
-_COUNT: Final = 200
-_WIDTH, _LOW, _HIGH = 140.0, 1.3, 24.0  # metres: width, more than any view's, and the heights between which dust drifts
+_COUNT: Final = 130
+_WIDTH, _LOW, _HIGH = 92.0, 1.3, 24.0  # metres: width, more than any view's, and the heights between which dust drifts
 _CARRY: Final = 16.0  # m/s of the air for every m/s² that it pushes a craft
 _TRAIL: Final = 0.2  # seconds of movement that a grain's trail covers
 _STEPS: Final = 4  # points: lengths of trails are multiples of it, so that few pictures are made
@@ -55,10 +55,9 @@ class Wind:
         gone, speed = (self._near * self._of_air(given) for given in (conditions.impulse(time), conditions.push(time)))
         place = self._start.copy()
         place[:, 0] = (place[:, 0] + gone) % _WIDTH - _WIDTH / 2
-        seen = np.abs(place[:, 0] - view.centre[0]) < 0.6 * surface.get_width() / view.pixels_per_metre
         length = np.abs(speed) * _TRAIL * view.pixels_per_metre / view.scale
-        trails, rows = [], (view.pixels(place), length, self._near)
-        for (x, y), points, near in zip(*(each[seen].tolist() for each in rows), strict=True):
+        trails = []
+        for (x, y), points, near in zip(view.pixels(place).tolist(), length.tolist(), self._near.tolist(), strict=True):
             trail = _trail(max(1, round(points / _STEPS)), view.scale, self._dust, round(3 * near))
             trails.append((trail, (round(x - trail.get_width() / 2), round(y))))
         surface.fblits(trails)
