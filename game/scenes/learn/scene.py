@@ -142,8 +142,7 @@ class ChapterScene(PanelScene):
             colour = INK if guess is None else palette.good if right else palette.warn
             column.text(texts.LEARN_ANSWERS[self.key][came], colour=colour)
         elif guess is not None and self.finding:
-            column.caption(texts.LEARN_UNSETTLED)
-            column.text(texts.LEARN_UNDECIDED[self.key], colour=MUTE)
+            column.text(texts.LEARN_UNSETTLED, colour=MUTE)
 
     def _show_code(self) -> None:
         """Show the code, or the picture again."""

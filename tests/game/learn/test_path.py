@@ -73,8 +73,8 @@ def test_a_chapter_grows_in_two_languages_and_leads_on(open_game: Open, context:
         assert part in said
     scene.chapter.found()
     said = written(driver, monkeypatch)
-    for part in (texts.LEARN_UNSETTLED, texts.LEARN_UNDECIDED[key][:20], "shown"):
-        assert part in said
+    assert texts.LEARN_UNSETTLED in said
+    assert "shown" in said
     assert not done(driver, key)
     for came in (0, 1, None):
         scene.chapter.found()
