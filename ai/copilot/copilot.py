@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 
@@ -25,13 +25,6 @@ from ai.lander.rules import ACTION_SHARES
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
 _STEERS: Final = 3  # action = 3 * main + steer
-
-
-class QFunction(Protocol):
-    """Protocol of a source of Q-values, such as a DeepQAgent."""
-
-    def q_values(self, observation: Floats) -> Floats:
-        """Return the Q-value of every action, (n, 6), for observations (n, 9)."""
 
 
 class Mode(StrEnum):
@@ -86,7 +79,8 @@ class CoPilot:
     Hands off, the co-pilot flies to the likeliest. So it remembers from one decision to the next, which should be some
     1/15 s; `forget` makes it ready for another flight.
 
-    `route` is how the network is led around rock on a leg of a descent.
+    `agent` has `q_values`, (n, 6) for observations (n, 9), as a DeepQAgent does, and for futures is a pilot as well;
+    `route` is how it is led around rock on a leg of a descent.
 
     Attributes:
         guardians: what it remembers of each flight, one for each slot: the plans.
@@ -95,12 +89,12 @@ class CoPilot:
     """
 
     def __init__(
-        self, agent: QFunction, assist: float = 0.5, mode: Mode | str = Mode.TOLERANCE, *, route: Route | None = None
+        self, agent: Any, assist: float = 0.5, mode: Mode | str = Mode.TOLERANCE, *, route: Route | None = None
     ) -> None:
         self.agent, self.assist, self.mode = agent, assist, Mode(mode)
         self.reward_scale = (agent.config if isinstance(agent, DeepQAgent) else AgentConfig()).reward_scale
         self._intent = Intent(self.reward_scale)
-        self.lookahead = Lookahead(agent, route)  # type: ignore[arg-type]  # futures ask for a pilot; values do not
+        self.lookahead = Lookahead(agent, route)
         self.guardians: list[Guardian] = []
         self._rules: tuple[object, ...] = ()  # of the environment that the plans are for
 

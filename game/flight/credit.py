@@ -93,7 +93,8 @@ class Credit:
     @property
     def assists(self) -> str:
         """The assists in words, of the steps flown and, while the flight lasts, of the next one; empty without any."""
-        words = [self._slow if name == "pace" else texts.ASSIST_WORDS[name] for name in self._named]
+        percent = round(100 * (self.pace if self._flight.over else min(self.pace, self._settings.pace)))
+        words = [texts.ASSIST_WORDS[name].format(percent=percent) for name in self._named]
         return texts.ASSISTS_USED.format(assists=", ".join(words)) if words else ""
 
     @property
@@ -112,13 +113,6 @@ class Credit:
             "pace": settings.pace != 1,
         }
         return {name for name, on in chosen.items() if on}
-
-    @property
-    def _slow(self) -> str:
-        """The slowest pace in words."""
-        slowest = self.pace if self._flight.over else min(self.pace, self._settings.pace)
-        percent = round(100 * slowest)
-        return texts.ASSIST_HALF_SPEED if percent == 50 else texts.ASSIST_WORDS["pace"].format(percent=percent)
 
     # What it counts for
 

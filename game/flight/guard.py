@@ -82,11 +82,6 @@ class Guard:
         self._moment = -1  # steps flown when the futures asked for last begin
         self._flown_by: tuple[object, ...] = ()  # and what they are flown by
 
-    @property
-    def hand(self) -> StickHolder:
-        """Who holds the stick."""
-        return self._crew.hand
-
     def acts(self, flight: Flight[Any]) -> bool:
         """Return whether a guardian goes by futures now; it begins with a decision, every fourth step."""
         copilot = self._crew.copilot
@@ -119,7 +114,7 @@ class Guard:
 
     def choose(self, flight: Flight[Any]) -> Choice:
         """Return the next step's push, which is decided every fourth step."""
-        by_hand, likely = self.hand is StickHolder.HUMAN, None
+        by_hand, likely = self._crew.hand is StickHolder.HUMAN, None
         if by_hand:
             self._taps.follow(flight.asked)
         if _begins(flight):
@@ -130,9 +125,9 @@ class Guard:
         assert self.push is not None
         assert decision is not None
         if not by_hand:
-            return Choice(self.push, self.hand, self._alone)
+            return Choice(self.push, StickHolder.NETWORK, self._alone)
         overridden = bool(decision.overridden[0])
-        by = StickHolder.NETWORK if overridden else self.hand
+        by = StickHolder.NETWORK if overridden else StickHolder.HUMAN
         return Choice(self.push, by, decision, self._wish, overridden, likely)
 
     def _decide(self, flight: Flight[Any], by_hand: bool) -> Doubles | None:

@@ -68,10 +68,8 @@ class LogbookScene(PanelScene):
 
     @property
     def _shown(self) -> list[Entry]:
-        """The flights that pass the filter, newest first, or the best flights by their score."""
+        """All flights, newest first, or the best by their score."""
         newest = self._entries[::-1]
-        if self._filter == 1:
-            return [entry for entry in newest if entry.landed]
         return best(newest) if self._filter else newest
 
     def _describe_chosen(self, column: Column) -> None:

@@ -111,13 +111,11 @@ class Watched:
             framing.follow(self.camera, swarm.env, clear=self.clear)
 
     def fly_to_the_next_decision(self) -> None:
-        """Fly until the shown lander's next decision; the others fly on while it rests after a flight."""
-        swarm, slot = self.swarm, self.shown
-        alone = not np.delete(swarm.since_end == 0, slot).any()
-        before = swarm.decided[slot]
-        for _ in range(REST_STEPS * alone + swarm.decision_steps):
+        """Fly until the shown lander's next decision, through its rest after a flight."""
+        before = self.swarm.decided[self.shown]
+        for _ in range(REST_STEPS + self.swarm.decision_steps):
             self.fly()
-            if swarm.decided[slot] != before:
+            if self.swarm.decided[self.shown] != before:
                 return
 
     def nearest(self, point: tuple[float, float]) -> int | None:

@@ -15,7 +15,7 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import Preview
 from game.flight.logbook import describe
 from game.flight.networks import DECISION_STEPS
-from game.flight.outcomes import outcome_card, qualities
+from game.flight.outcomes import outcome_card
 from game.flight.swarm import Swarm
 from game.scenes.logbook.scene import entry_row
 from tests.support.flights import begun
@@ -143,11 +143,6 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
     assert outcome_card(flight.env).reason.startswith("Time ran out")
 
 
-def test_a_landing_is_centred_within_two_fifths_of_the_way_to_the_edge_of_the_pad():
-    for across, centred in ((1.1, True), (1.4, False)):
-        assert ("centred" in qualities(fallen(across, STAND + 0.02).env)) is centred
-
-
 def test_a_new_flight_of_a_swarm_holds_no_action_of_the_last_one():
     class Pushing:
         def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
@@ -248,12 +243,6 @@ def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
     for _ in range(70):
         swarm.step()
     assert swarm.decided[0] == pilot.asked == 10
-
-
-def test_at_its_own_pace_every_update_is_a_step():
-    pace = TimeScale()
-    assert all(pace.steps() == 1 for _ in range(100))
-    assert pace.between(0.4) == 0.4
 
 
 def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_over():

@@ -54,7 +54,13 @@ def test_a_landing_with_assists_is_reported_kindly_and_kept_apart(open_game: Ope
     card = play.ending.card
     assert card.good
     assert card.advice == texts.ASSISTS_USED.format(
-        assists=", ".join([texts.ASSIST_WORDS["wider_pads"], texts.ASSIST_WORDS["untimed"], texts.ASSIST_HALF_SPEED])
+        assists=", ".join(
+            [
+                texts.ASSIST_WORDS["wider_pads"],
+                texts.ASSIST_WORDS["untimed"],
+                texts.ASSIST_WORDS["pace"].format(percent=50),
+            ]
+        )
     )
     [entry] = Records(context.user_dir).entries()
     assert (entry.landed, entry.alone, entry.bar, entry.medal) == (True, False, "assists", 0)

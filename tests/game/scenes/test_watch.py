@@ -190,21 +190,3 @@ def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
     assert rests != before
     watching.frames(60)
     assert watch.world.camera.shot == rests
-
-
-def test_another_language_is_spoken_at_once(watching: Driver, written: list[str]):
-    names = ("WATCH_MODEL", "WATCH_COUNT", "WATCH_SPEED")
-    english = {getattr(texts, name) for name in names}
-    with watching.speaking("de"):
-        written.clear()
-        watching.app.draw()
-        assert {getattr(texts, name) for name in names} <= set(written)
-        assert not set(written) & english - {getattr(texts, name) for name in names}
-
-
-def test_the_pause_names_all_entries_in_the_language_that_was_chosen_over_it(watching: Driver):
-    watching.key(pygame.K_ESCAPE)
-    before = [widget.label for widget in watching.form.widgets]
-    with watching.speaking("de"):
-        assert not {widget.label for widget in watching.form.widgets} & set(before)
-    assert [widget.label for widget in watching.form.widgets] == before

@@ -166,21 +166,6 @@ def test_keys_and_gamepad_move_tilt_and_throw_with_a_pointer(watching: Driver, d
     assert watching.top_name == "WatchScene"
 
 
-def test_the_stick_moves_the_pointer_and_going_on_lets_go(watching: Driver):
-    watching.button(pygame.CONTROLLER_BUTTON_Y)
-    watching.button(pygame.CONTROLLER_BUTTON_A)
-    assert hand(watching).typing
-    before = hand(watching).place.x
-    watching.axis(pygame.CONTROLLER_AXIS_LEFTX, -30000)
-    watching.frames(10)
-    watching.axis(pygame.CONTROLLER_AXIS_LEFTX, 0)
-    assert hand(watching).place.x < before - 20
-    watching.button(pygame.CONTROLLER_BUTTON_Y)
-    watching.frames(2)
-    assert not scene(watching).playback.stopped
-    assert not hand(watching).typing
-
-
 def test_a_touched_flight_is_not_counted_and_says_so(open_game: Open, context: Context, tmp_path, monkeypatch):
     context.models_dir = tmp_path  # only the scripted pilot is here
     driver = open_game(WatchScene, seed=2)
