@@ -114,8 +114,6 @@ class FlightPauseScene(PauseScene):
             if not settings.three_pads:  # among hills, all begin from anywhere
                 rung, rungs = max(0.0, settings.rung), (0.0, float(TOP_RUNG))
                 panel.slider(texts.CHOICES_LADDER, rung, rungs, self._choose_rung, step=1.0, figure=_rung)
-            if flown.begun:
-                panel.aside(texts.CHOICES_LATER)
         if self._flight.words.next:
             panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
         elif not flown.credit.alone:
