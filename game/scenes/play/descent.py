@@ -12,7 +12,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import pygame
 
 from ai.flights.verification import DESCENT, landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
@@ -20,7 +19,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TEXT
 from game.flight.choosers import Alone
 from game.flight.flight import Flight, Recording
 from game.flight.networks import Policy, sentence, who
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
     from game.scenes.play.flown_flight import FlownFlight
 
 _MOST: Final = 5  # the highest factor of a row of landings
-_FILLS: Final = 40  # steps in which the tank is seen to fill
-_FADES: Final = 24  # steps in which a new leg appears
 _GAUGE, _WORDS = 120.0, 220.0  # points of the gauge's width, and of the words over it
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
@@ -67,7 +64,7 @@ class Descent(Challenge):
         self.begins = self._next = LegStart()
         self.legs = self.total = self.streak = 0
         self.rules.bar, self._landed, self._counts = "", False, True
-        self._points, self._gained, self._since = 0, 0.0, 0
+        self._points, self._gained = 0, 0.0
         self._relief = ""  # who flew the last leg in the player's place
 
     def start(self, wanted: Wanted) -> Start:
@@ -75,7 +72,7 @@ class Descent(Challenge):
         seed = wanted.seed
         if seed != self._seed or not self._landed:
             self._start_run(seed)
-        self.begins, self._landed, self._since = self._next, False, 0
+        self.begins, self._landed = self._next, False
         self.rules.again, self.rules.staked = False, self.legs > 0
         recording = Recording(seed, "random", leg=self.begins)
         # The ground of the next leg, as it will be unless this one ends on a flat spot.
@@ -114,11 +111,6 @@ class Descent(Challenge):
             marks=partial(self._draw, flown), card=partial(self._add_to, flown),
             stake=(texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)),
         )  # fmt: skip
-
-    def stepped(self, flown: FlownFlight) -> str:
-        """Let the tank fill once the craft has landed."""
-        self._since += flown.flight.over
-        return ""
 
     def ended(self, flown: FlownFlight) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank; or end the run."""
@@ -163,19 +155,14 @@ class Descent(Challenge):
 
     def _draw(self, flown: FlownFlight, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw the mark of the goal and, on the ground, what the landing has brought."""
-        flight, calm = flown.flight, flown.scenery.calm
+        flight = flown.flight
         if not flight.over:
             _draw_goal(canvas, view, flight.env)
         elif self._landed:
             craft = view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
-            self._draw_landing(canvas, craft, 1.0 if calm else min(1.0, self._since / _FILLS))
-        if flown.waiting and self.begins.number > 1 and not calm and flown.age < _FADES:
-            # Two fills in place take half as long as a translucent picture of the whole window.
-            dark = 1 - flown.age / _FADES
-            canvas.surface.fill([round(255 * (1 - dark))] * 3, special_flags=pygame.BLEND_RGB_MULT)
-            canvas.surface.fill([round(dark * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)
+            self._draw_landing(canvas, craft)
 
-    def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
+    def _draw_landing(self, canvas: Canvas, craft: tuple[float, float]) -> None:
         (x, y), half = craft, _WORDS / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
         rows = Cursor(x - half, y - _CLEAR, _WORDS, canvas.scale, canvas)
@@ -186,8 +173,7 @@ class Descent(Challenge):
         fuel = texts.DESCENT_NO_FUEL if self._next.bare else texts.DESCENT_FUEL.format(seconds=self._gained)
         rows.in_style(SMALL, MUTE).text(fuel, "centre")
         rows.gap(LEADING * SMALL + 2)
-        now = self._next.tank - (1 - filled) * self._gained
-        replace(rows, left=x - _GAUGE / 2, width=_GAUGE).bar(now / TANK, canvas.palette.good)
+        replace(rows, left=x - _GAUGE / 2, width=_GAUGE).bar(self._next.tank / TANK, canvas.palette.good)
 
 
 def _draw_goal(canvas: Canvas, view: View, env: LanderEnv) -> None:

@@ -148,9 +148,9 @@ def test_one_that_is_elsewhere_or_under_another_gravity_is_not_on_the_plan(agent
     env = low()
     (plan,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[3],))])
     assert plan.push(Here.of(env))
-    env.gravity *= 1.1
+    env.world.gravity = 1.1 * env.world.gravity
     assert plan.push(Here.of(env)) is None
-    env.gravity /= 1.1
+    env.world.gravity = env.world.gravity / 1.1
     env.fly(np.array([3]))
     assert plan.push(Here.of(env)) is None  # between two decisions
     for _ in range(3):
