@@ -48,9 +48,9 @@ class Aim:
 
 AIMS: Final = {
     "CartPole-v1": Aim(500.0, 100_000),
-    "Acrobot-v1": Aim(-80.0, 100_000),
-    "MountainCar-v0": Aim(-110.0, 150_000),
-    "LunarLander-v3": Aim(270.0, 300_000),
+    "Acrobot-v1": Aim(-80.0, 200_000),
+    "MountainCar-v0": Aim(-110.0, 300_000),
+    "LunarLander-v3": Aim(270.0, 600_000),
     LANDER: Aim(99.5, 200_000),
 }
 TUNED: Final[dict[str, tuple[int, dict[str, Any]]]] = {  # steps and settings

@@ -35,7 +35,7 @@ class LanderSession(Session[Training]):
         training.on_step = self._on_step
         training.validation_pace = 1 + self.env.num_envs // 256
         self._explanations = Explanations(training)
-        self._swarm_state = self._swarm_state_now()
+        self._swarm_state = SwarmState.of(self.env, training.agent.decisions)
         self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
@@ -81,14 +81,8 @@ class LanderSession(Session[Training]):
         self.history.checkpoints[-1].restore(self.training.agent)
 
     def _on_step(self, result: StepResult) -> None:
-        self._swarm_state = self._swarm_state_now()
+        self._swarm_state = SwarmState.of(self.env, self.training.agent.decisions)
         self._explanations.follow(self.env.actions, result)
-
-    def _swarm_state_now(self) -> SwarmState:
-        env, training = self.env, self.training
-        position, angle = env.position.astype(np.float32), env.angle.astype(np.float32)
-        actions, outcome = env.actions.astype(np.int8), env.outcome.astype(np.int8)
-        return SwarmState(position, angle, actions, outcome, training.agent.decisions)
 
     def _checkpoint(self, success: float) -> Checkpoint:
         agent = self.training.agent

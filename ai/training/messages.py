@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ai.environment import Floats
+from ai.lander.environment import LanderEnv
 
 Command = tuple[Any, ...]
 DIVERGED: Final = "not finite"  # what a run says of its network that ended so
@@ -40,6 +41,12 @@ class SwarmState:
     action: NDArray[np.int8]  # (n,) as flown in this decision
     outcome: NDArray[np.int8]  # (n,) of ai.lander.environment.Outcome
     decisions: int
+
+    @classmethod
+    def of(cls, env: LanderEnv, decisions: int) -> Self:
+        """Return the landers of an environment as they are."""
+        position, angle = env.position.astype(np.float32), env.angle.astype(np.float32)
+        return cls(position, angle, env.actions.astype(np.int8), env.outcome.astype(np.int8), decisions)
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,10 +67,6 @@ class Taste:
         """Learn from one more answer."""
         self.restore(np.concatenate([self.differences, difference[None]]), np.append(self.answers, answer))
 
-    def take_back(self) -> None:
-        """Forget the last answer."""
-        self.restore(self.differences[:-1], self.answers[:-1])
-
     def restore(self, differences: Doubles, answers: Ints) -> None:
         """Learn from these answers alone."""
         self.differences, self.answers = differences, answers

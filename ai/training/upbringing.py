@@ -9,7 +9,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any, Final
+from pathlib import Path
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -19,10 +20,12 @@ from ai.lander.environment import LanderEnv
 from ai.lander.rules import FLYING, LANDED
 from ai.lander.spawns import SPAWNS
 from ai.training.config import PRESETS, Config
+from ai.training.history import COLUMNS
 from ai.training.loop import Progress, Training
+from ai.training.messages import SwarmState
 from ai.training.preferences import FIRST, NEITHER, SECOND, SUMS, PaidMemory, Paying, Taste
+from ai.training.session import Session
 from ai.training.state import State
-from ai.training.tasks import Trial
 
 UPBRINGING: Final = PRESETS["modern"].changed(schedule_decisions=240_000, replay_size=800_000, mirror=False)
 BEFORE: Final = 30_000  # decisions that are flown at random before anything is asked
@@ -32,7 +35,6 @@ _STARTS, _COPIES = 12, 8  # of flights that are flown to ask about
 _LANDINGS: Final = 4  # of these starts, where one that learns has landed
 _DARING: Final = 0.5  # share of random actions in the most daring of them
 _REMEMBERED: Final = 40  # landings of those that learn
-_SCOUTING: Final = 3  # decisions of flights to ask about for one of learning
 _LONGEST: Final = 400  # decisions of any flight
 
 
@@ -107,8 +109,6 @@ class Upbringing(Training):
         self.agent.flown = self._watch
         self._learns_until = self.agent.decisions + BEFORE
         self._pool: list[list[Question]] = []  # for each start
-        self._asked: list[Question] = []
-        self._scouts: Trial[list[list[Question]]] | None = None
         self._landings: deque[tuple[Doubles, Ints]] = deque(maxlen=_REMEMBERED)  # starts and actions
         self._starts: Doubles = np.zeros((self.env.num_envs, 6))
         self._actions: Ints = np.zeros((self.env.num_envs, _LONGEST), dtype=np.intp)
@@ -127,14 +127,14 @@ class Upbringing(Training):
         return self.agent.decisions >= self._learns_until
 
     def advance(self) -> Progress:
-        """Let every lander take one decision, learn from it, and go on with the flights to be asked about."""
+        """Let every lander take one decision, and learn from it; ask, if nothing is asked and enough is learned."""
         env, fresh = self.env, self.env.steps == 0
         self._starts[fresh] = np.column_stack([env.position, env.velocity, env.angle, env.angular_velocity])[fresh]
         self.agent.rests = self.resting
         progress: Progress = super().advance()
-        wanted = self._scouts is not None or (self.question is None and self.agent.decisions >= BEFORE)
-        for _ in range(_SCOUTING if wanted else 0):
-            self._go_scouting()
+        if self.question is None and self.resting:
+            self._pool = self._pool or self._scout()
+            self._ask()
         return progress
 
     def _watch(self) -> None:
@@ -148,24 +148,15 @@ class Upbringing(Training):
     # Answers
 
     def answer(self, answer: int) -> None:
-        """Take the answer to the question, learn from it, and ask the next one; raises ValueError if there is none."""
+        """Take the answer to the question, and ask the next one; raises ValueError if there is none."""
         if self.question is None or answer not in (FIRST, SECOND, NEITHER):
             raise ValueError("there is no such question")
-        self._asked.append(self.question)
         first, second = self.question
         self.taste.answer(first.sums - second.sums, answer)
         self._learns_until = max(self._learns_until, self.agent.decisions) + EACH
-        if len(self.taste.answers) % POOL == 0 and self._scouts is None:
-            self._scouts = self._scout()
+        if len(self.taste.answers) % POOL == 0:
+            self._pool = []
         self._ask()
-
-    def take_back(self) -> None:
-        """Take the last answer back, and ask that question again; raises ValueError if there is none."""
-        if not self._asked:
-            raise ValueError("nothing has been answered since this began")
-        self.taste.take_back()
-        self._pay()
-        self.question = self._asked.pop()
 
     def _ask(self) -> None:
         """Pay by the taste as it is known now, and ask what would tell most of it; each start is asked about once."""
@@ -182,27 +173,13 @@ class Upbringing(Training):
         self.agent.paying.points = points = self.taste.pay
         self.memory.pay(points)
 
-    # Flights to ask about
-
-    def _go_scouting(self) -> None:
-        """Take one decision of the flights to ask about; begin them if there are none."""
-        self._scouts = self._scouts or self._scout()
-        try:
-            next(self._scouts)
-        except StopIteration as done:
-            self._pool, self._scouts = done.value, None
-            if self.question is None:
-                self._ask()
-
     def ready(self) -> Question:
-        """Learn from all answers, fly all flights under way to their end, and return the question."""
-        while not self.resting:
+        """Learn from all answers, and return the question."""
+        while self.question is None or not self.resting:
             self.advance()
-        while self.question is None or self._scouts is not None:
-            self._go_scouting()
         return self.question
 
-    def _scout(self) -> Trial[list[list[Question]]]:
+    def _scout(self) -> list[list[Question]]:
         """Fly from a few starts, several times from each; return pairs for each start."""
         rng, count = self._rng, _STARTS * _COPIES
         known = [self._landings[number] for number in rng.permutation(len(self._landings))[:_LANDINGS]]
@@ -225,7 +202,6 @@ class Upbringing(Training):
             sums += paying.latest
             poses.append(_poses(env))
             taken.append(held)
-            yield
         lengths = -(-env.steps // env.frame_skip)
         flights = [
             Flight(np.stack(poses)[: length + 1, slot], np.stack(taken)[:length, slot], outcome, sums[slot])
@@ -254,3 +230,48 @@ class Upbringing(Training):
 
 def _poses(env: LanderEnv) -> Floats:
     return np.column_stack([env.position, env.angle]).astype(np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A question, and the taste as it is known now; sent whenever one of them is another."""
+
+    newest_only: ClassVar = True
+
+    answers: int  # so far
+    question: Question | None
+    liking: Doubles  # (sums,) mean weight of each
+
+
+class TasteSession(Session[Upbringing]):
+    """Session of an upbringing: what is asked, what is liked, and the landers. It is kept after every answer."""
+
+    kind, columns = Upbringing, COLUMNS
+
+    def __init__(self, training: Upbringing, keep: Path | None, source: Path | None) -> None:
+        super().__init__(training, keep, source)
+        self._asked: Question | None = None
+        training.on_step = self._on_step
+
+    def show(self) -> None:
+        training = self.training
+        self._asked = training.question
+        liking = training.taste.weights.mean(axis=0)
+        self.messages.append(Asked(len(training.taste.answers), self._asked, liking))
+
+    def tell(self, progress: Progress) -> None:  # noqa: ARG002 - what is shown is no curve
+        if self.training.question is not self._asked:
+            self.show()
+
+    def _on_step(self, result: StepResult) -> None:  # noqa: ARG002
+        self.messages.append(SwarmState.of(self.training.env, self.training.agent.decisions))
+
+    def _choose(self, answers: int, answer: int) -> None:
+        """Take the answer to the question after so many; one to another question is not meant."""
+        if answers == len(self.training.taste.answers):
+            self.training.answer(answer)
+            self.show()
+            if self.keep is not None:
+                self.keeper.move_to(self.keep)
+
+    commands = Session.commands | {"choose": _choose}

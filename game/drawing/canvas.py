@@ -312,16 +312,12 @@ class Canvas:
         edge = shapes.rounded(area.size, radius * self.scale, colour, max(1, self.px(width)))
         self._blit(edge, area.topleft, alpha)
 
-    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA, shown: float = 1.0) -> None:
-        """Draw a translucent panel; all panels of the game look like this. `shown` is how far it has come, 0 to 1."""
-        if shown >= 1:
-            area = self._area(rect)
-            opaque = not self.surface.get_flags() & pygame.SRCALPHA
-            surface = shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha, premultiplied=opaque)
-            flags = pygame.BLEND_PREMULTIPLIED if opaque else 0
-            self.surface.blit(surface, area.topleft, None, flags)
-        else:
-            self.rounded(rect, 8, PANEL, alpha * shown)
+    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
+        """Draw a translucent panel; all panels of the game look like this."""
+        area = self._area(rect)
+        opaque = not self.surface.get_flags() & pygame.SRCALPHA
+        surface = shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha, premultiplied=opaque)
+        self.surface.blit(surface, area.topleft, None, pygame.BLEND_PREMULTIPLIED if opaque else 0)
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""

@@ -6,7 +6,6 @@ hinted small sizes do neither. Signs of buttons are characters as well: see `gam
 
 from __future__ import annotations
 
-import math
 import re
 from bisect import bisect_right
 from functools import lru_cache
@@ -134,20 +133,6 @@ def _coverage(factor: int) -> npt.NDArray[np.uint8]:
 
 
 @lru_cache(maxsize=4096)
-def fitting(string: str, size: float, weight: Weight, tabular: bool, scale: float, room: float, least: float) -> float:
-    """Return the size in pixels at which a text is rendered: no wider than `room`, nor smaller than `least`.
-
-    `size`, `room` and `least` are in points, of `scale` pixels.
-    """
-    pixels = round(size * scale, 2)
-    if room < math.inf and pixels > least * scale:
-        too_wide = span(string, pixels, weight, tabular) / max(room * scale, 1.0)
-        if too_wide > 1:
-            pixels = round(max(pixels / too_wide, least * scale), 2)
-    return pixels
-
-
-@lru_cache(maxsize=4096)
 def span(string: str, pixels: float, weight: Weight, tabular: bool) -> float:
     """Return the width of a string in pixels; `tabular` gives every digit the same."""
     if not tabular:
@@ -178,10 +163,13 @@ def line(
 ) -> tuple[list[tuple[pygame.Surface, float, int]], float, float, float]:
     """Return all that is needed to write a text in one look-up: most words on a screen stay from frame to frame.
 
-    Its surfaces, each with its place across and the row of its baseline; its width, ascent and descent in pixels. The
-    arguments are those of `fitting`.
+    Its surfaces, each with its place across and the row of its baseline; its width, ascent and descent in pixels. It is
+    no wider than `room`, nor smaller than `least`; these and `size` are in points, of `scale` pixels.
     """
-    pixels = fitting(string, size, weight, tabular, scale, room, least)
+    pixels = round(size * scale, 2)
+    too_wide = span(string, pixels, weight, tabular) / max(room * scale, 1.0)
+    if too_wide > 1 and pixels > least * scale:
+        pixels = round(max(pixels / too_wide, least * scale), 2)
     if tabular:
         parts = digits(string, pixels, weight, colour)
     elif string:
@@ -254,6 +242,6 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
 
 def forget() -> None:
     """Clear the cache of rendered strings, after a change of the window's size or of the language; fonts stay open."""
-    caches = numbers, reach, digit_width, render, _covered, fitting, span, digits, line
+    caches = numbers, reach, digit_width, render, _covered, span, digits, line
     for cache in caches:
         cache.cache_clear()

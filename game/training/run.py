@@ -17,7 +17,7 @@ from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
-from ai.training.taste_session import Asked
+from ai.training.upbringing import Asked
 from game.core import texts
 from game.core.shelf import Collection, LibraryError
 from game.core.worker import Worker, WorkerState

@@ -8,7 +8,7 @@ import pygame
 
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import FAINT, INK, SMALL
+from game.drawing.tokens import FAINT, INK, PANEL, SMALL
 
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
@@ -59,7 +59,7 @@ class Note:
         if drawn:
             alpha, widest = min(1.0, self._left / _STEPS_FADING), min(words.measured(self.text), room) + 2 * beside
             box = pygame.FRect(view.centerx - widest / 2, view.bottom + _APART / 2, widest, high)
-            canvas.panel(box, _COVER, alpha)
+            canvas.rounded(box, 8, PANEL, _COVER * alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
             words.canvas, words.y = canvas, box.top + above
             words.text(self.text, "centre", alpha)

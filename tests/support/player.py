@@ -58,11 +58,11 @@ class Player(Driver):
 
     def lead_on(self, direction: str) -> None:
         """Press a direction until the focus moves, as often as a list has rows, or a choice options."""
-        before = self.form.focused
+        before, place = self.form.focused, self._index
         steps = len(before.rows) if isinstance(before, ListRow) else len(getattr(before, "options", "  "))
         for _ in range(steps + 1):
             self.press(direction)
-            if self.form.focused is not before:
+            if self._index != place:  # what is chosen in a list describes its screen anew
                 return
 
     def ways(self) -> dict[int, list[str]]:

@@ -4,8 +4,7 @@ import numpy as np
 
 from ai.lander.environment import Outcome
 from ai.training.preferences import SUMS
-from ai.training.taste_session import Asked
-from ai.training.upbringing import Flight
+from ai.training.upbringing import Asked, Flight
 from game.scenes.taste.scene import TasteScene
 from game.ui.context import Context
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class DailyStart(Challenge):
-    """Start of a day, the same for everybody, without a network to help.
+    """Today's flight, the same for everybody, without a network to help.
 
     Args:
         day: the day.

@@ -12,7 +12,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import pygame
 
 from ai.flights.verification import DESCENT, landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
@@ -20,7 +19,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TEXT
 from game.flight.choosers import Alone
 from game.flight.flight import Flight, Recording
 from game.flight.networks import Policy, sentence, who
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
-_FADES: Final = 24  # steps in which a new leg appears
 _GAUGE, _WORDS = 120.0, 220.0  # points of the gauge's width, and of the words over it
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
@@ -169,11 +167,6 @@ class Descent(Challenge):
         elif self._landed:
             craft = view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
             self._draw_landing(canvas, craft, 1.0 if calm else min(1.0, self._since / _FILLS))
-        if flown.waiting and self.begins.number > 1 and not calm and flown.age < _FADES:
-            # Two fills in place take half as long as a translucent picture of the whole window.
-            dark = 1 - flown.age / _FADES
-            canvas.surface.fill([round(255 * (1 - dark))] * 3, special_flags=pygame.BLEND_RGB_MULT)
-            canvas.surface.fill([round(dark * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         (x, y), half = craft, _WORDS / 2

@@ -22,7 +22,6 @@ _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 _STRIDE: Final = 4  # steps between points of a path
-_MOST_MARKS: Final = 24
 _DIM: Final = 0.62  # as the past must not outshine the present
 
 
@@ -93,14 +92,14 @@ class FlownPath:
         return np.array(self._points)
 
     def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles]) -> None:
-        """Draw the path, and a diamond where the co-pilot stepped in, below the head; some of many."""
+        """Draw the path, and a diamond where the co-pilot stepped in, below the head."""
         pixels, start = view.pixels(self.places), 0
         for hand, run in groupby(self._hands):
             end = start + len(list(run))
             colour = HUMAN if hand is StickHolder.HUMAN else NET
             draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * ClearArea.head)
             start = end
-        for place in moments[:: max(1, -(-len(moments) // _MOST_MARKS))]:
+        for place in moments:
             spot = view.points(place).tolist()
             if spot[1] > canvas.view.top + ClearArea.head:
                 canvas.marker("diamond", spot, 8, NET)

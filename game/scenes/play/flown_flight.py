@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import pygame
 
@@ -55,21 +55,6 @@ _LONGEST: Final = 3600  # steps after which its flight counts as one that does n
 _THINKS: Final = 2  # decisions of six futures that are flown in a frame
 
 
-class Happened(NamedTuple):
-    """What has happened in 1/60 s of a flight.
-
-    Attributes:
-        flown: whether a step was flown.
-        ended: whether the flight has ended with it.
-        retries: whether the next try begins now, without a card.
-
-    """
-
-    flown: bool = False
-    ended: bool = False
-    retries: bool = False
-
-
 class FlownFlight:
     """One flight of the player's, made anew for every start; call `step` in every 1/60 s.
 
@@ -94,7 +79,6 @@ class FlownFlight:
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
-        age: steps of 1/60 s since it was first shown, whether or not it flies.
 
     """
 
@@ -106,7 +90,6 @@ class FlownFlight:
         self.challenge, self.network, self.helped = challenge, network, helped
         self.waiting = self._held_before = True
         self.begun = False
-        self.age = 0
         self.record: Record | None = None
         rules = challenge.rules
         self._policy = None if rules.alone else network.policy
@@ -159,10 +142,9 @@ class FlownFlight:
 
     def animate(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
-        self.age += 1
         self.help_words.shown = max(0, self.help_words.shown - 1)
 
-    def step(self, asked: Push) -> Happened:
+    def step(self, asked: Push) -> None:
         """Advance by 1/60 s, in which the stick asks for that; the craft may wait, or slowed time make no step due."""
         self.pace.rate = self._settings.pace
         if self._waits(asked):
@@ -170,12 +152,12 @@ class FlownFlight:
             if guard := self.flight.chooser.guard:
                 guard.hang(self.flight, asked)
             self.path_preview.follow(waiting=True)
-            return Happened()
-        happened = self._fly(asked) if self.pace.steps() else Happened()
+            return
+        if self.pace.steps():
+            self._fly(asked)
         self._heard.follow(self.scenery.stage.thrust[0])  # between steps too, or fire would fall silent
-        return happened
 
-    def _fly(self, asked: Push) -> Happened:
+    def _fly(self, asked: Push) -> None:
         """Fly a step with all that belongs to it; after the end, only what still moves goes on."""
         flight, was_over = self.flight, self.flight.over
         self.begun = True
@@ -201,7 +183,6 @@ class FlownFlight:
             self._finish_card()
         self.scenery.clear = self.clear
         self.scenery.follow(ended, self.ending.shot)
-        return Happened(True, ended, flight.over and self.challenge.rules.again and self.ending.due)
 
     def _waits(self, asked: Push) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""

@@ -18,10 +18,9 @@ from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import INK, MARGIN, MUTE, SMALL, TEXT, Colour
 from game.explain.readouts import Lamp
-from game.flight.credit import ASSISTS
 from game.flight.networks import titled
 from game.input.bindings import Command
-from game.scenes.play.words import dial_words, sentence, surroundings
+from game.scenes.play.words import sentence, surroundings
 from game.ui.hints import Hint, HintRow, flight_hints, split
 
 if TYPE_CHECKING:
@@ -200,8 +199,7 @@ def _asides(flown: FlownFlight, words: Words) -> list[str]:
 
 
 def _means(flown: FlownFlight) -> str:
-    """Say what the help that is set means now."""
-    if flown.flight.chooser.copilot is None:
-        return ""
-    guard = flown.flight.chooser.guard
-    return dial_words(ASSISTS[flown.helped.help], guard.ahead.problem if guard else texts.FUTURES_NOT_YET)
+    """Say why a guardian goes by points of reward, where it does."""
+    chooser = flown.flight.chooser
+    problem = chooser.guard.ahead.problem if chooser.guard else texts.FUTURES_NOT_YET
+    return texts.GUARDIAN_BY_VALUES.format(problem=problem) if chooser.shared and problem else ""

@@ -142,12 +142,13 @@ class PlayScene(Scene):
             return self.pause()
         asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
-        happened = self.flown.step(asked)
-        if happened.ended and not self.challenge.rules.again:
+        self.flown.step(asked)
+        if self.flight.over and self.challenge.rules.again:
+            if self.ending.due:
+                self.retry()
+        elif self.flight.over and self.ending.card is None:
             self._sitting.add(self.flown)
             self.ending.card = self._make_card()
-        elif happened.retries:
-            self.retry()
         if card := self._card:
             self.ending.whole = framing.whole(self.flown.path.places, card.clear(self.context.reading()))
         return None

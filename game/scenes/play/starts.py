@@ -20,7 +20,7 @@ def tutorial(context: Context) -> PlayScene:
 
 
 def day(context: Context) -> PlayScene:
-    """Fly the start of today."""
+    """Fly today's flight."""
     return PlayScene(context, challenge=DailyStart(date.today(), Days(context.user_dir)))
 
 

@@ -116,24 +116,6 @@ def surroundings(env: LanderEnv) -> Iterator[str]:
 # What a co-pilot does
 
 
-def dial_words(assist: float, problem: str = "") -> str:
-    """Say when a guardian at that assist, 0 to 1, steps in; empty if nobody helps.
-
-    `problem` says why it goes by points of reward, if it does.
-    """
-    from ai.copilot.copilot import guardian_margin
-    from ai.copilot.futures import DECISION_STEPS
-    from ai.copilot.guardian import decisions_of
-    from engine import DT
-
-    if assist == 0:
-        return ""
-    if problem:
-        by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
-        return f"{texts.GUARDIAN_BY_VALUES.format(problem=problem)} {by_points}"
-    return texts.DIAL_LOOKS_AHEAD.format(seconds=f"{decisions_of(assist) * DECISION_STEPS * DT:.1f}")
-
-
 def changed_by(decision: SharedDecision) -> str:
     """Say in one sentence what a guardian has just changed; empty where it has changed nothing, or only waits."""
     from ai.copilot.futures import DECISION_STEPS

@@ -10,8 +10,7 @@ import pygame
 
 from ai.training.config import Config
 from ai.training.preferences import FIRST, NEITHER, SECOND, SUMS
-from ai.training.taste_session import TasteSession
-from ai.training.upbringing import UPBRINGING
+from ai.training.upbringing import UPBRINGING, TasteSession
 from game.core import texts
 from game.core.scene import Push, Transition
 from game.drawing.canvas import Canvas
@@ -79,8 +78,7 @@ class TasteScene(PanelScene):
         panel.gap(6)
         self._row = panel.widget(PairRow(self.pair, self.answer, self._height, self._waits))
         panel.explain(texts.TASTE_HELP["pair"])
-        again, back = (texts.TASTE_AGAIN, self.pair.again), (texts.TASTE_BACK, self._take_back)
-        panel.words([again, back, self.unfolding(_MORE)])
+        panel.words([(texts.TASTE_AGAIN, self.pair.again), self.unfolding(_MORE)])
         panel.gap(6)
         if self.context.settings.is_open(_MORE):
             panel.words([(texts.TASTE_KEEP, self._keep), (texts.TASTE_ANEW, self._start_anew)])
@@ -147,9 +145,6 @@ class TasteScene(PanelScene):
             self.context.sound.play("choose")
             self.pair.ask(None)
             self.form.focus(self._row)
-
-    def _take_back(self) -> None:
-        self.run.ask("take_back")
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Go on explaining; everything else is the panel's."""

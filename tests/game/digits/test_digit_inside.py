@@ -162,10 +162,15 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
 # Why not
 
 
+@pytest.fixture(scope="module")
+def classic():
+    return DigitClassifier.load(MODELS_DIR / "digits" / "classic")  # which is measured sooner
+
+
 @pytest.fixture
-def why_not(open_game: Open, context: Context, modern, nine) -> Driver:
+def why_not(open_game: Open, context: Context, classic, nine) -> Driver:
     save_settings(context)
-    return open_game(DigitInsideScene, modern, nine)
+    return open_game(DigitInsideScene, classic, nine)
 
 
 def measured(driver: Driver) -> WhyNotTab:
@@ -176,7 +181,7 @@ def measured(driver: Driver) -> WhyNotTab:
     return top
 
 
-def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, modern, nine):
+def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, classic, nine):
     why_not.click(why_not.the(DigitBars).place(8).center)
     why_not.form.focus(why_not.the(DigitBars))
     why_not.button(pygame.CONTROLLER_BUTTON_DPAD_UP)
@@ -186,22 +191,22 @@ def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, moder
     take = top.changes[0]
     why_not.press_on(texts.WHY_NOT_TAKE_IT)
     assert top.image.sum() < nine.sum()
-    assert modern.predict(top.image)[0][7] > modern.predict(nine)[0][7]
+    assert classic.predict(top.image)[0][7] > classic.predict(nine)[0][7]
     assert top.contrast.scores[7] == pytest.approx(take.after, abs=1e-4)
     why_not.press_on(texts.WHY_NOT_UNDO)
     np.testing.assert_array_equal(top.image, nine)
 
 
-def test_what_is_said_of_ink_is_true(why_not: Driver, modern, monkeypatch):
+def test_what_is_said_of_ink_is_true(why_not: Driver, classic, monkeypatch):
     why_not.key(pygame.K_7)
     top, words = measured(why_not), words_written(monkeypatch)
     why_not.resize((1600, 900))  # paints everything anew
     said = " ".join(words)
     assert len(top.changes) == 2
     for change in top.changes:
-        network = modern.network
-        after = network.predict(modern.shaped(top.contrast.changed(change.row, change.column, change.ink)))[0]
-        before = network.predict(modern.shaped(top.image))[0]
+        network = classic.network
+        after = network.predict(classic.shaped(top.contrast.changed(change.row, change.column, change.ink)))[0]
+        before = network.predict(classic.shaped(top.image))[0]
         assert after[7] > before[7]
         assert f"{figure(float(after[7]))} instead of {figure(float(before[7]))}" in said
 

@@ -10,6 +10,7 @@ import pytest
 
 from game.cli import add_commands
 from game.core import texts
+from game.core.scene import Route
 from game.drawing.tokens import HUMAN, NET
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import GRAVITIES, PhysicsScene
@@ -220,26 +221,15 @@ def test_pieces_are_walked_through_by_keys_and_chosen_with_the_mouse(open_game: 
 # The command
 
 
-def test_the_command_opens_the_exhibit_over_the_menu_and_names_those_there_are(monkeypatch, tmp_path, capsys):
-    opened: list[Driver] = []
-
-    def stay(app, stop) -> int:
-        driver = Driver(app)
-        opened.append(driver)
-        driver.frames(3)
-        assert scene(driver).chosen == "drag"
-        driver.keys(pygame.K_ESCAPE, pygame.K_UP, pygame.K_RETURN)  # Pause, Leave
-        assert driver.top_name == "MenuScene"
-        app.close()
-        return 0
-
-    monkeypatch.setattr("game.shell.app.App.run", stay)
+def test_the_command_opens_the_exhibit_and_names_those_there_are(monkeypatch, tmp_path, capsys):
+    opened = []
+    monkeypatch.setattr("game.start.play", lambda *_, begin: opened.append(begin) or 0)
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers())
     arguments = parser.parse_args(["physics", "--exhibit", "drag"])
     arguments.user_dir, arguments.full_screen = tmp_path, False
     assert arguments.run(arguments) == 0
-    assert opened
+    assert opened == [Route("physics", ("drag",))]
     with pytest.raises(SystemExit):
         parser.parse_args(["physics", "--exhibit", "trebuchet"])
     said = capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The start of the day: the first attempt counts and is kept, later ones are practice beside a ghost."""
+"""Today's flight: the first attempt counts and is kept, later ones are practice beside a ghost."""
 
 import time
 from collections.abc import Callable

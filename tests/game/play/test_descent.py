@@ -15,7 +15,6 @@ from game.flight.replay import FlightReplay
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
-from tests.game.play.ends import TOO_FAST, end
 from tests.support.descent import stand_on
 from tests.support.driver import Driver
 from tests.support.flights import actions, play
@@ -189,22 +188,3 @@ def test_a_tap_within_one_frame_begins_a_flight_that_waits(open_game: Open, devi
     flown = actions(play(driver).flight)
     assert flown[0] >= 3  # it fires for the step of the press, and no longer
     assert all(action < 3 for action in flown[1:])
-
-
-def test_a_tap_switches_a_latched_engine_on_and_the_next_one_off(open_game: Open):
-    driver = open_game(PlayScene, 4)
-    driver.app.context.settings.toggle_thrust = True
-    driver.frames(3)
-    for on in (True, False):
-        tap(driver, "key")
-        driver.frames(5)
-        assert (play(driver).flight.recording.pushes[-1].action >= 3) is on
-
-
-def test_the_tap_that_asks_for_another_start_does_not_begin_it(open_game: Open):
-    driver = open_game(PlayScene, 4, challenge=Descent())
-    end(driver, TOO_FAST)
-    for kind in (pygame.KEYDOWN, pygame.KEYUP):
-        pygame.event.post(pygame.event.Event(kind, key=pygame.K_SPACE, mod=0))
-    driver.frames(5)
-    assert play(driver).waiting

@@ -1,10 +1,11 @@
 """Every screen opens, and goes on, in a window of any size: a full screen may be smaller than the smallest window."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 
 from game.core.scene import Push
+from game.drawing.paint_cache import A_FRAME, spread
 from game.scenes.menus.menu import MenuScene
 from game.shell import window
 from game.ui.context import Context
@@ -18,8 +19,11 @@ NARROW = (320, 1200), (1600, 200)
 
 
 @pytest.fixture(autouse=True)
-def any_size(monkeypatch: pytest.MonkeyPatch) -> None:
+def any_size(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(window, "MINIMUM_SIZE", (1, 1))
+    spread(A_FRAME)  # a rough land will do
+    yield
+    spread(0)
 
 
 def opened_in(open_game: Open, name: str, size: tuple[int, int]) -> Driver:

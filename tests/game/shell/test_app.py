@@ -19,7 +19,6 @@ from game.shell.app import LOG_NAME, App, log_to
 from game.shell.window import NoDisplayError
 from game.start import play
 from game.ui.context import Context
-from tests.game.tour.checkers import changed_by_drawing
 from tests.support.driver import Driver
 
 
@@ -233,16 +232,6 @@ def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
         gc.enable()
 
 
-def test_stack_pops_several_levels_and_ends_empty(game: Driver):
-    probes = [Probe(), Probe()]
-    for probe in probes:
-        game.app.scenes.apply(Push(probe))
-    game.app.scenes.apply(Pop(2))
-    assert game.top_name == "MenuScene"
-    game.app.scenes.apply(Pop())
-    assert not game.frames(1)
-
-
 def test_minimised_draws_nothing_and_comes_back(open_game):
     probe = Probe()
     game = open_game(probe)
@@ -355,13 +344,3 @@ def test_a_scene_that_fails_to_leave_gives_back_what_it_holds_and_settings_are_s
     game.app.close()
     assert held[1].closed == 1
     assert SettingsFile(context.user_dir).load().model == "mine"
-
-
-def test_drawing_changes_nothing_while_one_scene_gives_way_to_another(game: Driver):
-    """`tests/game/tour` asks it of each screen."""
-    driver = game
-    driver.frames(5)
-    driver.app.show(SettingsScene)
-    for _ in range(15):
-        assert not changed_by_drawing(driver)
-        driver.app.scenes.update()

@@ -15,9 +15,8 @@ LONG = "The game is open in another window, which keeps the settings. What you s
 
 
 @pytest.mark.parametrize(
-    ("size", "text_size"), [((1280, 720), "normal"), ((800, 600), "largest"), ((720, 1280), "large")]
+    ("size", "text_size", "scene"), [((1280, 720), "normal", "Play"), ((800, 600), "largest", "MenuScene")]
 )
-@pytest.mark.parametrize("scene", ["MenuScene", "Play"])
 def test_a_note_stands_whole_below_all_else_in_the_middle(
     open_game: Open,
     context: Context,

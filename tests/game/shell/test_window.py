@@ -95,6 +95,7 @@ def test_the_first_window_fits_the_desktop(desktop: tuple[int, int], size: tuple
     assert fitting(desktop) == size
 
 
+@pytest.mark.slow
 def test_interrupt_ends_the_game_without_a_traceback(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         assert window.interrupt() == 130

@@ -50,16 +50,10 @@ def test_a_key_answers_and_another_question_comes(taste, key, answer):
     assert taste.top.pair.question is not question
 
 
-def test_a_click_on_a_flight_likes_it_better_and_a_word_takes_that_back(taste):
-    question = taste.top.pair.question
+def test_a_click_on_a_flight_likes_it_better(taste):
     taste.frames(2)
     taste.click(taste.top.pair.halves[1].box.center)
     taste.wait(lambda: taste.top.run.asked.answers == 1)
-    taste.press_on(texts.TASTE_BACK)
-    taste.wait(lambda: taste.top.run.asked.answers == 0)
-    first, second = question
-    assert taste.top.pair.question[0].sums.tolist() == first.sums.tolist()
-    assert taste.top.pair.question[1].sums.tolist() == second.sums.tolist()
 
 
 def test_by_gamepad_alone(taste):
@@ -69,10 +63,15 @@ def test_by_gamepad_alone(taste):
     taste.button(pygame.CONTROLLER_BUTTON_BACK)
     taste.frames(2)
     assert taste.top.explained.stepping
-    taste.button(pygame.CONTROLLER_BUTTON_BACK)
-    taste.form.focus(taste.widget(texts.TASTE_BACK))
-    taste.button(pygame.CONTROLLER_BUTTON_A)
-    taste.wait(lambda: taste.top.run.asked.answers == 0)
+
+
+def test_with_one_switch_the_hints_answer_too(taste, context):
+    context.settings.one_switch = True
+    stops = taste.app.scan.stops(taste.top, taste.app.canvas)
+    labels = [stop.widget.label for stop in stops]
+    assert {texts.TASTE_THIS, texts.TASTE_THAT, texts.TASTE_NEITHER} <= set(labels)
+    stops[labels.index(texts.TASTE_THAT)].widget.press()
+    taste.wait(lambda: taste.top.run.asked.answers == 1)
 
 
 def test_flights_go_three_times_as_fast_as_life_and_again_on_a_key(taste):

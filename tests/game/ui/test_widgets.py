@@ -8,7 +8,7 @@ import pytest
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.drawing.tokens import INK, SMALL
 from game.ui.context import Context
 from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.listing import shortened
@@ -159,16 +159,6 @@ def test_a_text_of_any_length_is_drawn_no_wider_than_a_screen():
             surface, _ = typeface.render(letter * letters, size * canvas.scale, "regular", INK)
             assert surface.get_width() <= 16_384  # SDL's scaling wrote past its memory when it was ten times as wide
     assert canvas.text_width("a" * 1000 + "b") == canvas.text_width("a" * letters)
-
-
-def test_a_line_that_fits_the_largest_screen_is_drawn_whole():
-    canvas = Canvas(pygame.Surface((7680, 4320)))
-    line = "m" * 100
-    while canvas.text_width(line + "m", size=SMALL) < VIEW_SIZE[0]:
-        line += "m"
-    canvas.text(line, (0, 360), size=SMALL, colour=INK)
-    inked = np.flatnonzero(pygame.surfarray.array3d(canvas.surface).any(axis=(1, 2)))
-    assert inked[-1] >= canvas.text_width(line, size=SMALL) * canvas.scale - 3 * canvas.scale
 
 
 @pytest.mark.parametrize("letters", [3, 30, 100_000])
