@@ -391,7 +391,3 @@ class LanderEnv:
     def around(self, pad: Any = None) -> Floats:
         """Return the `ai.lander.sensing.SURROUNDINGS` of every lander, (n, k), for the target or another `pad`."""
         return surroundings(self, self.target if pad is None else pad)
-
-    def around_pads(self) -> Floats:
-        """Return what is around every lander on its way to each pad, (n, pads, k)."""
-        return np.stack([self.around(pad) for pad in range(len(self.ground.pads))], axis=1)

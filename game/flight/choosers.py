@@ -217,7 +217,8 @@ def seen_by(network: Any, flight: Flight[Any]) -> tuple[Floats, Floats | None]:
     """Return what a co-pilot reads of each pad, and what is around on the way there; on a leg, along its route."""
     if flight.route:
         return flight.route.observe(flight.env, network), None
-    return flight.env.observe_pads(network), flight.env.around_pads()
+    env = flight.env
+    return env.observe_pads(network), np.stack([env.around(pad) for pad in range(len(env.ground.pads))], axis=1)
 
 
 def steered(push: Push, observation: Floats) -> Push:

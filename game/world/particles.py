@@ -124,7 +124,7 @@ class Particles:
             speed = self._rng.uniform(6.5, 11.0, (count, 1))
             push = carried + direction * speed + aside * self._rng.normal(0.0, 0.55, (count, 1))
             start = nozzle + direction * self._rng.uniform(0.2, 0.9, (count, 1))
-            self._emit(kind, start, push, (0.14, 0.34), (0.03, 0.07))
+            self.add(kind, start, push, (0.14, 0.34), (0.03, 0.07))
 
     def blow(self, x: float, strength: float) -> None:
         """Blow dust outwards along the ground from where a jet meets it; `strength` 0 to 1."""
@@ -134,7 +134,7 @@ class Particles:
         speed = self._rng.uniform(1.6, 6.5, count) * (0.4 + 0.6 * strength)
         rise = 0.14 * speed * self._rng.uniform(0.2, 1.0, count)
         place = np.stack([start, self.floor(start) + 0.05], 1)
-        self._emit(ParticleKind.DUST, place, np.stack([side * speed, rise], 1), (0.5, 1.4), (0.08, 0.24))
+        self.add(ParticleKind.DUST, place, np.stack([side * speed, rise], 1), (0.5, 1.4), (0.08, 0.24))
 
     def raise_dust(self, foot: tuple[float, float], strength: float) -> None:
         """Raise a foot's dust, and sparks where it comes down hard; `strength` 0 to 1."""
@@ -146,7 +146,7 @@ class Particles:
             side = self._rng.choice((-1.0, 1.0), count)
             start = np.stack([foot[0] + side * self._rng.uniform(0.0, 0.25, count), np.full(count, foot[1] + 0.04)], 1)
             speed = np.stack([side * self._rng.uniform(*fast, count), self._rng.uniform(*rise, count)], 1)
-            self._emit(kind, start, speed, life, size)
+            self.add(kind, start, speed, life, size)
 
     def burst(self, position: Doubles, velocity: Doubles, share: float = 1.0) -> None:
         """Emit the debris of a crash: sparks, fragments and a ring of dust, or a share of them."""
@@ -160,11 +160,7 @@ class Particles:
             fast = speed * self._rng.uniform(0.15, 1.0, count)
             push = np.stack([np.cos(turn), np.sin(turn)], 1) * fast[:, None] + 0.35 * velocity * (1, -0.4)
             start = position + self._rng.uniform(-0.5, 0.5, (count, 2)) * (1.0, 0.7)
-            self._emit(kind, start, push, life, size)
-
-    def _emit(self, kind: ParticleKind, position: Doubles, velocity: Doubles, life: _Range, size: _Range) -> None:
-        count = len(position)
-        self.add(kind, position, velocity, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
+            self.add(kind, start, push, life, size)
 
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
         """Draw the particles, `alpha` of the way from the last step to this one."""
@@ -182,18 +178,20 @@ class Particles:
         surface.fblits([(_puff(*row[1:3], self._dust), row[3]) for row in rows if row[0] == ParticleKind.DUST])
         for number in np.flatnonzero(kind == ParticleKind.SHARD).tolist():
             size = float(radius[number]) * min(1.0, 2 * float(left[number]))
-            _draw_shard(surface, place[number], size, int(look[number]), float(age[number]))
+            x, y = place[number].tolist()
+            _draw_shard(surface, x, y, size, int(look[number]), float(age[number]))
         shining = [(_glow(*row[:3]), row[3]) for row in rows if row[0] >= ParticleKind.SPARK]
         surface.fblits(shining, pygame.BLEND_RGB_ADD)
 
-    def add(self, kind: ParticleKind, position: Doubles, velocity: Doubles, life: Doubles, size: Doubles) -> None:
-        """Add particles (count, 2) that live for `life` seconds (count,), with radii of `size` metres (count,)."""
-        slots = (self._next + np.arange(len(position))) % len(self._age)
-        self._next += len(position)
+    def add(self, kind: ParticleKind, position: Doubles, velocity: Doubles, life: _Range, size: _Range) -> None:
+        """Add particles (count, 2) that live for `life` seconds, with radii of `size` metres, each from and to."""
+        count = len(position)
+        slots = (self._next + np.arange(count)) % len(self._age)
+        self._next += count
         self.position[slots] = self._before[slots] = position
-        self.velocity[slots], self._life[slots], self._size[slots] = velocity, life, size
-        self._age[slots], self.kind[slots] = 0.0, kind
-        self._look[slots] = self._rng.integers(0, 1000, len(slots))
+        self.velocity[slots], self._life[slots] = velocity, self._rng.uniform(*life, count)
+        self._size[slots], self._age[slots], self.kind[slots] = self._rng.uniform(*size, count), 0.0, kind
+        self._look[slots] = self._rng.integers(0, 1000, count)
 
 
 @lru_cache(maxsize=512)
@@ -221,9 +219,11 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     )
 
 
-def _draw_shard(surface: pygame.Surface, middle: Doubles, size: float, look: int, age: float) -> None:
+def _draw_shard(surface: pygame.Surface, x: float, y: float, size: float, look: int, age: float) -> None:
     """Draw a tumbling three-cornered fragment of foil or frame."""
-    turns = look + age * (3 + look % 5) / 4 + np.array([0.0, 0.3, 0.65])
-    reach = size * (0.5 + 0.5 * np.abs(np.sin(look + np.arange(3))))[:, None]
-    corners = middle + reach * np.stack([np.cos(math.tau * turns), 0.8 * np.sin(math.tau * turns)], axis=1)
-    pygame.draw.polygon(surface, _SHARDS[look % len(_SHARDS)], corners.tolist())
+    corners = []
+    for number, turn in enumerate((0.0, 0.3, 0.65)):
+        angle = math.tau * (look / 7 + age * (3 + look % 5) / 4 + turn)
+        reach = size * (0.5 + 0.5 * abs(math.sin(look + number)))
+        corners.append((x + reach * math.cos(angle), y + 0.8 * reach * math.sin(angle)))
+    pygame.draw.polygon(surface, _SHARDS[look % len(_SHARDS)], corners)

@@ -109,24 +109,6 @@ def test_what_is_set_in_one_world_leaves_the_impulses_of_others_alone():
         assert_same(pair, alone, [1])
 
 
-def test_a_reset_leaves_no_residue():
-    used, fresh = toys(2), toys(2)
-    throw(used, seed=1)
-    start = {name: getattr(fresh.state, name).copy() for name in STATE}
-    advance(used, 100)
-    for body in used.bodies:
-        body.set(
-            position=start["pose"][:, body.index, :2],
-            angle=start["pose"][:, body.index, 2],
-            velocity=(0, 0),
-            angular_velocity=0.0,
-        )
-    for _ in range(100):
-        used.step()
-        fresh.step()
-    assert used.state.pose.tobytes() == fresh.state.pose.tobytes()
-
-
 def test_worlds_go_on_from_their_memory_in_any_order_and_number():
     world = toys(3)
     throw(world, 4)

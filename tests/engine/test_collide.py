@@ -104,16 +104,6 @@ def test_the_margin_lets_a_gap_count():
         assert near.depth[0, 0] == pytest.approx(-0.01)
 
 
-def test_many_poses_at_once():
-    poses = np.array([[0, 1.9, 0], [5, 0, 0], [-1.9, 0, 0]], dtype=float)
-    many = collide(BOX, pose(0, 0), BOX, poses)
-    assert many.valid.any(axis=1).tolist() == [True, False, True]
-    for row in range(3):
-        one = collide(BOX, pose(0, 0), BOX, poses[row])
-        assert np.array_equal(one.points[0], many.points[row])
-        assert np.array_equal(one.normal[0], many.normal[row])
-
-
 @given(st.integers(0, 10**6), st.floats(-2.5, 2.5), st.floats(-2.5, 2.5), st.floats(-3, 3), st.floats(-3, 3))
 @settings(max_examples=100, deadline=None)
 def test_polygons_are_apart_if_and_only_if_brute_force_says_so(seed, x, y, turn_a, turn_b):

@@ -153,12 +153,3 @@ def test_released_from_a_deep_overlap_bodies_part_slowly_and_keep_no_speed():
             assert b.position[0, 0] - a.position[0, 0] - before <= 0.16, kind
             assert abs(world.state.velocity).max() < 1e-9, kind
         assert b.position[0, 0] - a.position[0, 0] == pytest.approx(1.0, abs=0.006), kind
-
-
-def test_a_slow_touch_does_not_bounce():
-    world = World(gravity=(0.0, 0.0))
-    world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
-    body = world.add(Circle(0.5), (0.0, 0.502), restitution=1.0)
-    body.velocity = (0.0, -0.2)
-    advance(world, 10)
-    assert body.velocity[0, 1] == pytest.approx(0.0, abs=1e-12)

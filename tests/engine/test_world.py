@@ -30,33 +30,6 @@ def test_an_empty_world_one_of_static_bodies_and_a_single_body():
     assert body.velocity[0, 1] == pytest.approx(-1.62)
 
 
-ADDED = {
-    "floor": lambda world: world.add(Polygon.box(20, 1), (0, -0.5), static=True),
-    "wall": lambda world: world.add(Polygon.box(1, 8), (2.5, 4), 0.1, static=True),
-    "box": lambda world: world.add(BOX, (0, 1.0)),
-    "ball": lambda world: world.add(Circle(0.4), (0.3, 2.5), restitution=0.5),
-}
-
-
-def test_bodies_may_be_added_in_any_order():
-    flown = []
-    for order in (("floor", "wall", "box", "ball"), ("box", "floor", "ball", "wall"), ("box", "wall", "ball", "floor")):
-        world = World(gravity=(0, -9.81), batch=2)
-        handles = {name: ADDED[name](world) for name in order}
-        handles["ball"].velocity = [[3.0, 0.0], [1.0, 1.0]]
-        advance(world, 100)
-        flown.append(np.stack([world.state.pose[:, handles[name].index] for name in ADDED]))
-    for other in flown[1:]:
-        assert other == pytest.approx(flown[0], abs=1e-6)
-    place = world.bodies[0].position.copy()
-    late = world.add(BOX, np.array([(0.0, 9.6), (3.0, 9.6)]), [0.0, 0.1])
-    assert np.array_equal(world.bodies[0].position, place)
-    assert late.position.tolist() == [[0.0, 9.6], [3.0, 9.6]]
-    assert late.angle.tolist() == [0.0, 0.1]
-    advance(world, 240)
-    assert (late.position[:, 1] > 0.4).all()
-
-
 def test_setters_reach_the_worlds_of_a_mask():
     world = floor(batch=3)
     body = world.add(BOX, (0, 2))
@@ -197,10 +170,3 @@ def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
     pair.params.quadratic_drag[1, 2] = 1e9  # an air of each world's own may be written into
     advance(pair, 1)
     assert pair.state.velocity[:, [0, 2], 1] == pytest.approx(np.array([[2.0, 2.0], [2.0, 0.0]]), abs=1e-3)
-    floored = floor()
-    box = floored.add(BOX, (0, 0.5))
-    for rubs in (1.0, 0.0):
-        floored.params = replace(floored.params, friction=np.array([rubs, rubs]))
-        box.velocity = (1.0, 0.0)
-        advance(floored, 60)
-        assert box.velocity[0, 0] == pytest.approx(1.0 - rubs, abs=1e-3)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from game.ui.context import Context
     from game.ui.panel import Panel
 
-# What flies comes first in the table.
+# What flies; everything else is in the other half of the table.
 FLYING: Final[tuple[Meaning, ...]] = (Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER)
 _LEAST: Final = 108.0  # points of a column
 _BETWEEN: Final = "  ·  "
@@ -111,6 +111,7 @@ class BindingsScene(PanelScene):
         super().__init__(context)
         self._controls = context.controls
         self.said = ""
+        self._half = 0
         self.build()
         self.form.focus(self.form.widgets[1])  # the first key
 
@@ -118,20 +119,23 @@ class BindingsScene(PanelScene):
         controls = self._controls
         panel.title(texts.BINDINGS_TITLE)
         panel.gap(4)
-        panel.button(texts.BINDINGS_ALL, self._reset_all)
+        panel.choice("", texts.BINDINGS_HALVES, self._half, self._show, size=18.0)
         panel.text(lambda: self.said, size=TEXT, colour=HUMAN)
         panel.gap(4)
         for column, words in zip(
             panel.beside((1.1, 1, 1), _LEAST, 24.0), (" ", texts.KEYS_KEYBOARD, texts.KEYS_PAD), strict=True
         ):
             column.caption(words)
-        for meaning in (*FLYING, *(each for each in controls.keys.table if each not in FLYING)):
+        for meaning in FLYING if self._half == 0 else [each for each in controls.keys.table if each not in FLYING]:
             panel.line()
             name, *cells = panel.beside((1.1, 1, 1), _LEAST, 24.0)
             name.gap(BindingCell.pad)
             name.text(texts.BINDINGS[meaning.name])
             for cell, bindings in zip(cells, (controls.keys, controls.buttons), strict=True):
                 cell.widget(BindingCell(controls, bindings, meaning, self._changed))
+        panel.line()
+        panel.gap(8)
+        panel.button(texts.BINDINGS_ALL, self._reset_all)
 
     def exit(self) -> None:
         self._controls.listening = False
@@ -151,6 +155,10 @@ class BindingsScene(PanelScene):
         if self._controls.listening:
             return [Action(Command.PAUSE, cell.cancel, texts.HINT_LEAVE_KEY)]
         return [self.form.confirms(texts.HINT_CHANGE), self.form.goes_back(texts.HINT_BACK)]
+
+    def _show(self, half: int) -> None:
+        self._half = half
+        self.build()
 
     def _changed(self, said: str) -> None:
         self.said = said

@@ -13,7 +13,7 @@ from game.core.shelf import reason
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import INK, TEXT_SIZES
 from game.flight.progress import put_away
-from game.input.controls import Command, Held
+from game.input.controls import Command
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
 from game.ui.panel_scene import PanelScene
@@ -107,7 +107,6 @@ class SettingsScene(PanelScene):
     def _describe_controls(self, left: Column, right: Column) -> None:
         left.button(texts.BINDINGS_OPEN, lambda: push("bindings"), texts.BINDINGS_LINE, colour=INK)
         self._toggles(left, "analogue")
-        left.aside(lambda: texts.ASSISTS_FINE.format(key=self.context.controls.word(Held.FINE)))
         self._toggles(right, "toggle_thrust", "one_switch")
 
     def _describe_flights(self, left: Column, right: Column) -> None:

@@ -23,22 +23,8 @@ from game.scenes.physics.exhibit import Exhibit, Grip
 _RECORDED: Final = (
     BroadPhase.near, deepest_face, collide_polygons, collide_polygon_circle, collide_circles, integrate_velocity,
 )  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class Axis:
-    """Axis on which two shapes were tried.
-
-    Attributes:
-        start: a place on the face that it is the normal of, in metres.
-        direction: unit vector, out of that face.
-        first: whether the face belongs to the first shape of the pair.
-
-    """
-
-    start: Array
-    direction: Array
-    first: bool = True
+# An axis on which two shapes were tried: a place on the face that it is the normal of, and its unit vector.
+Axis = tuple[Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +35,7 @@ class Pair:
         bodies: indices of their bodies.
         axes: the axes that were tried.
         chosen: number of the axis with the least overlap, or the widest gap.
+        to_b: unit vector along that axis, from the first shape to the second.
         contact: row of its contact in the solver; None if the two do not touch.
 
     """
@@ -56,13 +43,8 @@ class Pair:
     bodies: tuple[int, int]
     axes: list[Axis]
     chosen: int
+    to_b: Array
     contact: int | None
-
-    @property
-    def to_b(self) -> Array:
-        """Unit vector along the chosen axis, from the first shape to the second."""
-        axis = self.axes[self.chosen]
-        return axis.direction if axis.first else -axis.direction
 
 
 class StepRecord:
@@ -107,34 +89,35 @@ class StepRecord:
         seen = [0, 0, 0]
         for a, b in self._call(BroadPhase.near).values[f"{RETURN}.1"].tolist():
             circles = int(table.is_circle[[a, b]].sum())
-            axes, chosen = self._axes(circles, seen[circles], (a, b))
+            axes, chosen, flipped = self._axes(circles, seen[circles], (a, b))
             seen[circles] += 1
-            yield Pair((int(table.body[a]), int(table.body[b])), axes, chosen, row_of.get((a, b)))
+            to_b = -axes[chosen][1] if flipped else axes[chosen][1]
+            yield Pair((int(table.body[a]), int(table.body[b])), axes, chosen, to_b, row_of.get((a, b)))
 
-    def _axes(self, circles: int, number: int, shapes: tuple[int, int]) -> tuple[list[Axis], int]:
-        """Return the axes of a pair, one of those with so many circles, and which was chosen."""
+    def _axes(self, circles: int, number: int, shapes: tuple[int, int]) -> tuple[list[Axis], int, bool]:
+        """Return the axes of a pair with so many circles, which was chosen, and whether it is a face of the second."""
         if circles == 0:
             call, flip = self._call(deepest_face), self._call(collide_polygons).values["flip"]
             other, face = number + len(flip), call.values["face"]  # the second shapes stand after the first ones
             axes = list(self._faces(call, number, shapes[0]))
             chosen = len(axes) + face[other] if flip[number] else face[number]
-            return [*axes, *self._faces(call, other, shapes[1], first=False)], int(chosen)
+            return [*axes, *self._faces(call, other, shapes[1])], int(chosen), bool(flip[number])
         call = self._call(collide_polygon_circle if circles == 1 else collide_circles)
         values = call.values
         if circles == 2:
-            return [Axis(values["centre_a"][number], values["normal"][number])], 0
+            return [(values["centre_a"][number], values["normal"][number])], 0, False
         axes = list(self._faces(call, number, shapes[0]))
         if not values["from_corner"][number]:
-            return axes, int(values["face"][number])
-        return [*axes, Axis(values["nearest"][number], values["normal"][number])], len(axes)
+            return axes, int(values["face"][number]), False
+        return [*axes, (values["nearest"][number], values["normal"][number])], len(axes), False
 
-    def _faces(self, call: Call, number: int, shape: int, *, first: bool = True) -> Iterator[Axis]:
+    def _faces(self, call: Call, number: int, shape: int) -> Iterator[Axis]:
         """Yield the axes of a polygon's own faces; the table of shapes pads them to one number."""
         polygon, values = self.exhibit.world.shapes[shape], call.values
         assert isinstance(polygon, Polygon)
         for face in range(len(polygon.normals)):
             middle = (values["a.start"][number, face] + values["a.end"][number, face]) / 2
-            yield Axis(middle, values["a.normal"][number, face], first)
+            yield middle, values["a.normal"][number, face]
 
     # Pieces, named as in `texts.STEP_PIECES`, and what is said of them
 

@@ -148,13 +148,13 @@ class PhysicsStepScene(PanelScene):
             canvas.outline((x, y, end - x, bottom - y), 0, colour)
 
     def _draw_axes(self, canvas: Canvas, view: View, box: pygame.FRect, pair: Pair) -> None:
-        for number, axis in enumerate(pair.axes):
+        for number, (place, direction) in enumerate(pair.axes):
             if number != pair.chosen:
-                _draw_arrow(canvas, view, axis.start, _NORMAL * axis.direction, MUTE, 1)
-        chosen = pair.axes[pair.chosen]
+                _draw_arrow(canvas, view, place, _NORMAL * direction, MUTE, 1)
+        start, direction = pair.axes[pair.chosen]
         # The middle of a long face, such as the ground's, is not in the picture.
-        seen = box.collidepoint(view.points(chosen.start).tolist())
-        _draw_arrow(canvas, view, chosen.start if seen else self._middle(pair), _NORMAL * chosen.direction, NET)
+        seen = box.collidepoint(view.points(start).tolist())
+        _draw_arrow(canvas, view, start if seen else self._middle(pair), _NORMAL * direction, NET)
 
     def _draw_contact(self, canvas: Canvas, view: View, pair: Pair) -> None:
         contacts, row = self.record.contacts, pair.contact
@@ -167,7 +167,7 @@ class PhysicsStepScene(PanelScene):
         """Return the middle of the points of contact, or of the face nearest to the other shape."""
         contacts = self.record.contacts
         if contacts is None or pair.contact is None:
-            return pair.axes[pair.chosen].start
+            return pair.axes[pair.chosen][0]
         middle: Array = contacts.points[pair.contact][contacts.valid[pair.contact]].mean(axis=0)
         return middle
 

@@ -13,7 +13,7 @@ from game.drawing.tokens import MUTE, SMALL, TITLE
 from game.explain.readouts import rate_colour
 from game.ui.hints import Hint, HintRow
 
-LABEL: Final = 32.0  # points below a chart, for what is said of it
+_SAID: Final = 32.0  # points below a chart, for what is said of it
 _SIDE: Final = (320.0, 422.0)  # width of the panel at least and at most
 _WIDE: Final = 680.0  # points of a window from which the panel stands beside the display
 _BELOW: Final = 0.4  # share of a tall window for the panel
@@ -52,8 +52,8 @@ def layout(view: pygame.FRect) -> Layout:
     else:
         display.height = panel.top = round((1 - _BELOW) * view.height)
         panel.height = view.height - display.height
-    height = min(max(_CHARTS * display.height - LABEL, _CHART[0]), _CHART[1])
-    top, width = display.bottom - height - LABEL - 8, (display.width - 3 * _MARGIN) / 2
+    height = min(max(_CHARTS * display.height - _SAID, _CHART[0]), _CHART[1])
+    top, width = display.bottom - height - _SAID - 8, (display.width - 3 * _MARGIN) / 2
     boxes = tuple(pygame.FRect(left, top, width, height) for left in (_MARGIN, 2 * _MARGIN + width))
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
 

@@ -14,8 +14,8 @@ from game.core.clock import STEP
 from game.drawing.tokens import Colour
 from game.world.camera import View
 
-_COUNT: Final = 200
-_WIDTH, _LOW, _HIGH = 140.0, 1.3, 24.0  # metres: width, more than any view's, and the heights between which dust drifts
+_COUNT: Final = 130
+_WIDTH, _LOW, _HIGH = 92.0, 1.3, 24.0  # metres: width, more than any view's, and the heights between which dust drifts
 _CARRY: Final = 16.0  # m/s of the air for every m/s² that it pushes a craft
 _TRAIL: Final = 0.2  # seconds of movement that a grain's trail covers
 _STEPS: Final = 4  # points: lengths of trails are multiples of it, so that few pictures are made

@@ -249,19 +249,6 @@ def test_rectifiers_get_he_weights():
         assert np.abs(dense[1].weights).max() <= 1 / np.sqrt(300)
 
 
-@pytest.mark.parametrize("when", ["alone", "in a network"])
-def test_weights_that_somebody_has_set_are_not_drawn_again(when):
-    layer, network = FullyConnectedLayer(3, 2), NeuralNetwork(*CostFunctions.use_mse())
-    if when == "in a network":
-        network.add_layer(layer)
-    layer.parameters[0].value[...] = 7
-    if when == "alone":
-        network.add_layer(layer)
-    network.add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
-    np.testing.assert_array_equal(network.predict(np.ones(3)), [21, 21])
-    np.testing.assert_array_equal(network.values, [7] * 6 + [0] * 2)
-
-
 def test_looking_at_a_network_while_it_is_built_changes_nothing_of_it():
     networks = [NeuralNetwork(*CostFunctions.use_mse()) for _ in range(2)]
     for make in (

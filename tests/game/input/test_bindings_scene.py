@@ -34,6 +34,9 @@ def saved(driver: Driver, name: str) -> dict:
 
 
 def begin_with(driver: Driver, name: str) -> None:
+    """Show the other half of the table, and go to the key of a command."""
+    driver.form.focus(driver.form.widgets[0])
+    driver.key(pygame.K_RIGHT)
     driver.form.focus(driver.widget(texts.BINDINGS[name]))
 
 

@@ -28,8 +28,8 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
     """What is written in a frame, and which texts lie on one another."""
     with monkeypatch.context() as patch:
         notes = Written(patch.setattr)
-        for chart in (each for each in driver.top.charts.charts):
-            chart.renew()
+        for chart in driver.top.charts.charts:
+            chart._sheet = None  # painted anew
         driver.frames(1)
         found = notes.page(driver.app.canvas.reading).notes
     return [note.text for note in found], [

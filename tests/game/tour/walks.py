@@ -32,11 +32,16 @@ def walk(driver: Driver, screen: str, device: str) -> None:
         player.press("back")
         assert player.app.scenes.stack == below, "there is no way back"
         return
+    if screen == "MenuScene":
+        player.press("back")  # to Quit
+        player.press("confirm")
     for _ in range(3):
         if player.app.scenes.running and "PauseScene" not in player.top_name:
             player.press("back")
     if "PauseScene" in player.top_name:
         player.choose(texts.PAUSE_LEAVE)
+    elif player.app.scenes.running:
+        player.press("confirm")  # Quit, to which the title has led
     assert not player.app.scenes.running, "there is no way out"
 
 

@@ -58,7 +58,7 @@ def test_fragments_fly_and_bounce_above_the_hills_and_come_to_rest():
 def test_what_flies_about_falls_as_on_that_world(mission: str):
     env = MISSIONS[mission].begin()
     stage = Stage(env, np.random.default_rng(0))
-    stage.particles.add(ParticleKind.SHARD, np.array([[0.0, 20.0]]), np.zeros((1, 2)), np.array([9.0]), np.array([0.1]))
+    stage.particles.add(ParticleKind.SHARD, np.array([[0.0, 20.0]]), np.zeros((1, 2)), (9.0, 9.0), (0.1, 0.1))
     for _ in range(60):
         stage.particles.update()
     assert stage.particles.velocity[0, 1] == pytest.approx(-env.params.gravity)
