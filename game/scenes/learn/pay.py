@@ -57,12 +57,12 @@ def config_of(pay: RewardWeights) -> Config:
 class Trial:
     """Flights of an agent without random actions, one physics step at a time."""
 
-    def __init__(self, config: Config, checkpoint: Checkpoint, flights: int = FLIGHTS) -> None:
+    def __init__(self, config: Config, checkpoint: Checkpoint) -> None:
         self.agent = checkpoint.agent(config)
-        self.env = LanderEnv(flights, _SEED, SPAWN, frame_skip=1)
+        self.env = LanderEnv(FLIGHTS, _SEED, SPAWN, frame_skip=1)
         self.env.reset()
         self._steps = 0
-        self._actions: Ints = np.zeros(flights, np.intp)
+        self._actions: Ints = np.zeros(FLIGHTS, np.intp)
 
     @property
     def over(self) -> bool:
@@ -108,7 +108,6 @@ class PayChapter(Chapter):
         self.decisions, self.note = 0, ""
         self.trial: Trial | None = None
         self._swarm: SwarmState | None = None
-        self._checkpoint: Checkpoint | None = None
 
     def close(self) -> None:
         if self._worker:
@@ -158,25 +157,22 @@ class PayChapter(Chapter):
         elif self.trial and not self.trial.over:
             self._fly(self.trial)
 
-    def _hear(self, worker: Worker) -> None:
-        for message in worker.poll():
-            if isinstance(message, SwarmState):
-                self._swarm, self.decisions = message, message.decisions
-            elif isinstance(message, Checkpoint):
-                self._checkpoint = message
-        learnt = self._checkpoint is not None and self._checkpoint.decisions >= DECISIONS
-        if learnt or worker.state in (WorkerState.FAILED, WorkerState.ENDED):
-            self.note, self.changed = worker.problem, True
-            self.close()
-        if learnt and self._checkpoint:
-            self.trial = Trial(config_of(PAYS[self.pay]), self._checkpoint)
-
     def _fly(self, trial: Trial) -> None:
         for _ in range(_PACE):
             trial.step()
         if trial.over:
-            self.results[self.pay], self.changed = trial.flown(), True
+            self.results[self.pay] = trial.flown()
             self.found()
+
+    def _hear(self, worker: Worker) -> None:
+        for message in worker.poll():
+            if isinstance(message, SwarmState):
+                self._swarm, self.decisions = message, message.decisions
+            elif isinstance(message, Checkpoint) and message.decisions >= DECISIONS:
+                self.trial = Trial(config_of(PAYS[self.pay]), message)
+        if self.trial or worker.state in (WorkerState.FAILED, WorkerState.ENDED):
+            self.note, self.changed = worker.problem, True
+            self.close()
 
     def verdict(self) -> int | None:
         """Return what most flights did on the pay of the question: land, fly on, or crash; None before it was tried."""

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from game.scenes.play.flown_flight import FlownFlight
 
 _MOST: Final = 5  # the highest factor of a row of landings
-_FILLS: Final = 40  # steps in which the tank is seen to fill
 _GAUGE, _WORDS = 120.0, 220.0  # points of the gauge's width, and of the words over it
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
@@ -65,7 +64,7 @@ class Descent(Challenge):
         self.begins = self._next = LegStart()
         self.legs = self.total = self.streak = 0
         self.rules.bar, self._landed, self._counts = "", False, True
-        self._points, self._gained, self._since = 0, 0.0, 0
+        self._points, self._gained = 0, 0.0
         self._relief = ""  # who flew the last leg in the player's place
 
     def start(self, wanted: Wanted) -> Start:
@@ -73,7 +72,7 @@ class Descent(Challenge):
         seed = wanted.seed
         if seed != self._seed or not self._landed:
             self._start_run(seed)
-        self.begins, self._landed, self._since = self._next, False, 0
+        self.begins, self._landed = self._next, False
         self.rules.again, self.rules.staked = False, self.legs > 0
         recording = Recording(seed, "random", leg=self.begins)
         # The ground of the next leg, as it will be unless this one ends on a flat spot.
@@ -112,11 +111,6 @@ class Descent(Challenge):
             marks=partial(self._draw, flown), card=partial(self._add_to, flown),
             stake=(texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)),
         )  # fmt: skip
-
-    def stepped(self, flown: FlownFlight) -> str:
-        """Let the tank fill once the craft has landed."""
-        self._since += flown.flight.over
-        return ""
 
     def ended(self, flown: FlownFlight) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank; or end the run."""
@@ -161,14 +155,14 @@ class Descent(Challenge):
 
     def _draw(self, flown: FlownFlight, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw the mark of the goal and, on the ground, what the landing has brought."""
-        flight, calm = flown.flight, flown.scenery.calm
+        flight = flown.flight
         if not flight.over:
             _draw_goal(canvas, view, flight.env)
         elif self._landed:
             craft = view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
-            self._draw_landing(canvas, craft, 1.0 if calm else min(1.0, self._since / _FILLS))
+            self._draw_landing(canvas, craft)
 
-    def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
+    def _draw_landing(self, canvas: Canvas, craft: tuple[float, float]) -> None:
         (x, y), half = craft, _WORDS / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
         rows = Cursor(x - half, y - _CLEAR, _WORDS, canvas.scale, canvas)
@@ -179,8 +173,7 @@ class Descent(Challenge):
         fuel = texts.DESCENT_NO_FUEL if self._next.bare else texts.DESCENT_FUEL.format(seconds=self._gained)
         rows.in_style(SMALL, MUTE).text(fuel, "centre")
         rows.gap(LEADING * SMALL + 2)
-        now = self._next.tank - (1 - filled) * self._gained
-        replace(rows, left=x - _GAUGE / 2, width=_GAUGE).bar(now / TANK, canvas.palette.good)
+        replace(rows, left=x - _GAUGE / 2, width=_GAUGE).bar(self._next.tank / TANK, canvas.palette.good)
 
 
 def _draw_goal(canvas: Canvas, view: View, env: LanderEnv) -> None:

@@ -22,13 +22,11 @@ from game.ui.listing import Row
 from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
     from game.ui.context import Context
     from game.ui.panel import Panel
 
 _LEAST: Final = 320.0  # points of a column
 _PITCH, _AROUND = 30.0, 100.0  # points of a row of the list, and above and below the list
-_LAMPS: Final = 62.0  # from the last lamp to the end of its column
 _FLIGHTS: Final = "flights"  # in the game's own data
 _NAMES: Final = tuple(MISSIONS)
 
@@ -61,7 +59,7 @@ class MissionsScene(PanelScene):
         panel.title(texts.MISSIONS_TITLE)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
-        self._list = left.listing(
+        left.listing(
             [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, pitch=_PITCH,
             index=self._index, on_choose=self._choose,
         )  # fmt: skip
@@ -100,13 +98,6 @@ class MissionsScene(PanelScene):
         beside.y += BASELINE * (cursor.size - SMALL)
         beside.text(words)
         cursor.y = max(beside.y, cursor.y + LEADING * cursor.size) + 6
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        super().draw(canvas, alpha)
-        for row, name in enumerate(_NAMES):
-            y = self._list.baseline(row) - 4
-            if name in self._best and self.panel.box.collidepoint(self._list.box.left, y):
-                draw_lamps(canvas, (self._list.right - _LAMPS, y), self._best[name].medal)
 
     # Flights
 

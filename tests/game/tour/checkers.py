@@ -308,6 +308,7 @@ ONLY_AT = {
         "tutorial", "mission, card",
     },
     at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
+    - {"BindingsScene"}  # which is one table
     | {"Play", "mission", "daily", "descent", "LogbookScene, with much to list", "MissionsScene, with much to list"}
     | {"DigitsScene", "DigitInsideScene", "inside, sums", "inside, dreams"},
     in_flight_there_is_one_sentence: IN_FLIGHT,
