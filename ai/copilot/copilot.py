@@ -270,7 +270,7 @@ class CoPilot:
 
     def _void(self, env: LanderEnv) -> None:
         """Drop all plans where the rules, the ground or the number of landers are others than before."""
-        rules = env.params, env.limits, env.conditions, env.ground, env.num_envs
+        rules = env.params, env.limits, env.conditions, env.world.gravity, env.ground, env.num_envs
         if self._rules and any(a is not b for a, b in zip(rules, self._rules, strict=True)):
             self.forget()
         self._rules = rules

@@ -43,7 +43,6 @@ class Plan:
 
     Attributes:
         begin: physics steps flown when it begins.
-        gravity: of its world, m/s².
         target: number of the pad that the network flew to in it.
         shares: what is pushed in its k decisions, as shares of thrust, (k, 2).
         states: x, y, angle, and their changes each second, before every decision that was flown and after the last,
@@ -52,7 +51,6 @@ class Plan:
     """
 
     begin: int
-    gravity: float
     target: int
     shares: Doubles
     states: Doubles
@@ -65,7 +63,7 @@ class Plan:
     def push(self, here: Here) -> Push | None:
         """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
         number, between = divmod(here.steps - self.begin, DECISION_STEPS)
-        if between or number < 0 or here.gravity != self.gravity:
+        if between or number < 0:
             return None
         flown = len(self.states) - 1
         if number < flown:
@@ -79,7 +77,6 @@ class Here(NamedTuple):
     """Where one lander is, as far as its plan has to know."""
 
     steps: int
-    gravity: float
     state: tuple[float, ...]  # x, y, angle, and their changes each second
 
     @classmethod
@@ -90,9 +87,8 @@ class Here(NamedTuple):
     @classmethod
     def all(cls, env: LanderEnv) -> list[Here]:
         """Return where every lander of an environment is."""
-        falls = np.broadcast_to(-env.world.gravity[..., 1], env.num_envs)
-        rows = zip(env.steps.tolist(), falls.tolist(), _states(env).tolist(), strict=True)
-        return [cls(steps, fall, tuple(state)) for steps, fall, state in rows]
+        rows = zip(env.steps.tolist(), _states(env).tolist(), strict=True)
+        return [cls(steps, tuple(state)) for steps, state in rows]
 
 
 def _states(env: LanderEnv) -> Doubles:
@@ -243,7 +239,7 @@ class Lookahead:
             way = [part[: flown[lander] + more, lander].copy() for more, part in enumerate(flight)]
             if stands[lander]:
                 way[0] = np.concatenate([way[0], np.zeros((rest, 2))])
-            plan = Plan(int(moment.steps[row]), moment.fall(row), pad, *way)
+            plan = Plan(int(moment.steps[row]), pad, *way)
             found.append((plan, bool(landed[lander] or stands[lander])))
         return found
 

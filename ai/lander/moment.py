@@ -94,10 +94,6 @@ class Moment:
         """Text that is the same for moments that can be put into the same environments."""
         return str(self.state["built"])
 
-    def fall(self, row: int) -> float:
-        """Return the gravity that pulls at one of them, m/s²."""
-        return -float(self.state["gravity"][row, 1])
-
     def take(self, rows: Ints) -> Moment:
         """Return the moment of the landers `rows` (m,), each of them as often as it is named."""
         state = {name: _taken(value, rows) for name, value in self.state.items() if name != "memory"}

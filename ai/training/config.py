@@ -52,11 +52,9 @@ class Config(AgentConfig):
     @classmethod
     def value_from_json(cls, name: str, value: Any) -> Any:
         """Return the value of a field from what a file holds of it; raises ValueError for what cannot be one."""
-        if name != "reward_weights":
+        if name != "reward_weights" or not isinstance(value, Mapping):
             return super().value_from_json(name, value)
         parts = [item.name for item in fields(RewardWeights)]
-        if not isinstance(value, Mapping):
-            raise ValueError(f"reward_weights are numbers by name, of {', '.join(parts)}, not {shown(value)}")
         if unknown := [part for part in value if part not in parts]:
             raise ValueError(f"reward_weights has no {shown(unknown[0])}, only {', '.join(parts)}")
         return RewardWeights(**value)

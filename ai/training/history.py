@@ -31,7 +31,6 @@ CURVES_FILE: Final = "curves.csv"
 CHECKPOINTS_FILE: Final = "checkpoints.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
-_FORMERLY: Final = "history.npz"
 _VERSION: Final = 2
 _TURNING: Final = 1.0  # seconds of training between two changes of a knob that is still being turned
 _MOST_VALUES: Final = 1 << 26  # numbers in all checkpoints together: 256 MB
@@ -237,8 +236,6 @@ class History:
     def read(cls, folder: str | Path, columns: Sequence[str] = COLUMNS) -> History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
         history, file = cls(columns), HISTORY_FILE
-        if (Path(folder) / _FORMERLY).exists():
-            raise ModelFormatError(folder, f"{_FORMERLY} was saved by another version, and is left as it is")
         try:
             described = read_json(inside(folder, file))
             if not isinstance(described, dict) or described.get("version") != _VERSION:

@@ -16,7 +16,7 @@ BUTTONS = {"up": pygame.CONTROLLER_BUTTON_DPAD_UP, "down": pygame.CONTROLLER_BUT
            "confirm": pygame.CONTROLLER_BUTTON_A, "back": pygame.CONTROLLER_BUTTON_B,
            "pause": pygame.CONTROLLER_BUTTON_START, "step": pygame.CONTROLLER_BUTTON_RIGHTSTICK,
            "main": pygame.CONTROLLER_BUTTON_A, "hand over": pygame.CONTROLLER_BUTTON_Y,
-           "another": pygame.CONTROLLER_BUTTON_LEFTSHOULDER, "reset": pygame.CONTROLLER_BUTTON_X}  # fmt: skip
+           "another": pygame.CONTROLLER_BUTTON_GUIDE, "reset": pygame.CONTROLLER_BUTTON_X}  # fmt: skip
 DEVICES = ("keys", "pad")
 
 

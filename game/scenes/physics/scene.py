@@ -140,7 +140,6 @@ class PhysicsScene(PanelScene):
             value, change = self.exhibit.values[quantity.name], partial(self._change, quantity.name)
             shown = partial(_filled, figure)
             column.slider(label, value, quantity.limits, change, step=quantity.step, figure=shown)
-            column.explain(what["slider"])
         words: list[tuple[str, OnPress]] = [
             (texts.PHYSICS_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
             self.unfolding(_MORE),

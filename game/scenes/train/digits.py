@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.training.history import REVERTED, History
+from ai.training.history import REVERTED
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
@@ -41,14 +41,6 @@ _LEAST: Final = 180.0  # points beside it for the digits of a cell
 def digit_training(context: Context) -> TrainScene:
     """Return the scene of a run of digits."""
     return TrainScene(context, DigitView)
-
-
-def fallen(history: History) -> tuple[float, float] | None:
-    """Return the best and the present accuracy, if the present one is far lower; None otherwise, or after a return."""
-    back = max((turn.seconds for turn in history.setting_changes if turn.name == REVERTED), default=-1.0)
-    read = [score.success for score in history.validations if score.seconds > back]
-    best = max((score.success for score in history.validations), default=0.0)
-    return (best, read[-1]) if read and best - read[-1] > FALLEN else None
 
 
 class DigitView(View):
@@ -98,8 +90,13 @@ class DigitView(View):
 
     @property
     def _fallen(self) -> tuple[float, float] | None:
-        """The best accuracy and the present one, where a way back is offered."""
-        return fallen(self.run.history) if self.run.alive and not self.run.stopping else None
+        """The best accuracy and the present one, where that is far lower, and not since a return to the best."""
+        run, scores = self.run, self.run.history.validations
+        back = max((turn.seconds for turn in run.history.setting_changes if turn.name == REVERTED), default=-1.0)
+        if not scores or scores[-1].seconds <= back or not run.alive or run.stopping:
+            return None
+        best, now = max(score.success for score in scores), scores[-1].success
+        return (best, now) if best - now > FALLEN else None
 
     @property
     def _shows_misread(self) -> bool:

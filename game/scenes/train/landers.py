@@ -126,8 +126,7 @@ class LanderView(View):
         left = self.left
         if self.run.state is not None or left is None or not left.resumable:
             return ""
-        words = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
-        return words.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
+        return texts.TRAIN_LEFT_YOUNG.format(seconds=left.seconds)
 
     @property
     def worth_keeping(self) -> bool:  # type: ignore[override]

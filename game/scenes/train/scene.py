@@ -180,7 +180,9 @@ class TrainScene(FormScene):
         elif not self.view.describe_hint(column):
             knobs.describe_answers(column, settings)
         if words := self.view.unfinished:
-            column.button(texts.TRAIN_GO_ON, self._go_on_with_last, words, colour=HUMAN)
+            column.button(
+                texts.TRAIN_GO_ON, partial(self.start, settings.asked, 0, run.collection.unsaved), words, colour=HUMAN
+            )
         column.gap()
         anew = [(texts.TRAIN_ANEW, self._begin)] if run.alive and not run.stopping else []
         undo = [(texts.KNOBS_UNDO, settings.undo)] if settings.waits else []
@@ -327,9 +329,6 @@ class TrainScene(FormScene):
         """Show nothing of the runs before."""
         self._was_running, self._seen = False, None
         self.view.clear()
-
-    def _go_on_with_last(self) -> None:
-        self.start(self.knobs.asked, 0, self.run.collection.unsaved)
 
     def _save(self) -> Transition | None:
         """Ask for a name to save the run under."""

@@ -185,17 +185,6 @@ def test_what_can_change_in_a_run_is_changed_when_it_is_resumed_and_the_rest_is_
     assert json.loads((run / "training.json").read_text())["seed"] == 3
 
 
-def test_seconds_are_of_the_whole_run_too(tmp_path, capsys):
-    run = str(tmp_path / "run")
-    assert main(["train", "--seconds", "0.05", "--output", run, "--validation", "4", *SMALL]) == 0
-    assert main(["train", "--seconds", "0.05", "--resume", run]) == 1
-    assert "whole run" in capsys.readouterr().err
-    seconds = json.loads((tmp_path / "run" / "training.json").read_text())["seconds"]
-    assert main(["train", "--seconds", str(seconds + 0.05), "--resume", run, "--validation", "4"]) == 0
-    again = json.loads((tmp_path / "run" / "training.json").read_text())["seconds"]
-    assert round(seconds + 0.05, 3) <= again < seconds + 60  # a file holds milliseconds
-
-
 def full(*_, **__):
     raise OSError(28, "No space left on device")
 

@@ -52,9 +52,10 @@ def test_a_plan_flies_again_bit_for_bit_wherever_it_was_made(agent):
         moment = pickle.loads(pickle.dumps(Moment.of(env)))  # as it gets to another process
         before = env.snapshot()
         stick = Push.of(0.4, -0.3)
-        found = Lookahead(pilot).futures(moment, [(0, push) for push in (*KEYS, stick)])
+        asked = (KEYS[0], KEYS[4], stick)
+        found = Lookahead(pilot).futures(moment, [(0, push) for push in asked])
         assert any(future.plan for future in found), name
-        for push, future in zip((*KEYS, stick), found, strict=True):
+        for push, future in zip(asked, found, strict=True):
             if future.plan:
                 env.restore(before)
                 assert future.plan.push(Here.of(env)) == push, name
@@ -144,13 +145,10 @@ def test_a_leg_of_a_descent_is_flown_along_its_route(agent):
     assert env.outcome[0] == Outcome.LANDED
 
 
-def test_one_that_is_elsewhere_or_under_another_gravity_is_not_on_the_plan(agent):
+def test_one_that_is_elsewhere_is_not_on_the_plan(agent):
     env = low()
     (plan,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[3],))])
     assert plan.push(Here.of(env))
-    env.world.gravity = 1.1 * env.world.gravity
-    assert plan.push(Here.of(env)) is None
-    env.world.gravity = env.world.gravity / 1.1
     env.fly(np.array([3]))
     assert plan.push(Here.of(env)) is None  # between two decisions
     for _ in range(3):

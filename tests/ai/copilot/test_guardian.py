@@ -15,7 +15,7 @@ from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.push import KEYS, Push
 from game.core.assets import MODELS_DIR
 
-HERE = Here(0, 1.62, (0.0,) * 6)
+HERE = Here(0, (0.0,) * 6)
 COAST, LEFT, RIGHT, MAIN, MAIN_LEFT, MAIN_RIGHT = KEYS
 GUARD, GUIDE = 0.04, 0.64
 STARTS = (
@@ -33,7 +33,7 @@ def agent():
 
 def plan(*pushes, begin=0):
     """A plan that begins here with these pushes."""
-    return Plan(begin, 1.62, 0, np.array([push.shares for push in pushes]), np.zeros((len(pushes) + 1, 6)))
+    return Plan(begin, 0, np.array([push.shares for push in pushes]), np.zeros((len(pushes) + 1, 6)))
 
 
 def lands(*pushes, lasts=True):
@@ -183,9 +183,11 @@ def test_a_network_that_does_not_land_never_seizes_the_stick():
         q_values=lambda seen: np.tile(np.arange(6.0), (len(seen), 1)),
         act=lambda seen, *, held=None: np.full(len(seen), 3),
     )
-    env = flights(1)
-    overridden, _ = guarded(upwards, env, lambda env, _: np.full(1, 1))
-    assert overridden.sum() == 0
+    env, copilot = flights(1), CoPilot(upwards, GUARD, Mode.GUARDIAN)
+    for _ in range(6):
+        decision = copilot.decide(env.observe(), [1], env=env)
+        assert not decision.overridden[0]
+        env.fly(decision.action, decision.shares)
 
 
 def test_a_plan_is_void_under_other_rules(agent):

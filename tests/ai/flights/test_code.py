@@ -188,14 +188,6 @@ def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
             assert refusal(remade(values | change, inputs)) == "nonsense"
 
 
-def test_a_code_whose_content_has_no_end_is_refused():
-    values, inputs = content_of(shared([0, 3, 4] * 20))
-    content = deflated(json.dumps(values).encode() + b"\n" + inputs)
-    assert refusal(sealed(content)) == ""
-    for left_out in range(1, 9):
-        assert refusal(sealed(content[:-left_out])) == "nonsense"
-
-
 def test_sticks_move_within_their_ways_and_in_every_step(subtests):
     values, _ = content_of(shared([0, 3]))
     for moves, kind in [

@@ -11,7 +11,7 @@ from ai.digits.validation import EXAMPLES, Confusion
 from ai.training import digit_session
 from ai.training.digit_session import DigitSession
 from ai.training.history import REVERTED, SettingChange, Validation
-from ai.training.messages import Refused, RunStarted, Saved
+from ai.training.messages import RunStarted, Saved
 from ai.training.run import resume
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, ema_decay=0.9)
@@ -86,17 +86,6 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
 
 
-def test_live_knobs_turn_and_others_are_refused(data):
-    run = DigitSession.live(SMALL, data=data)
-    next(run)
-    assert run.send(("change", "learning_rate", 1e-4)) == (SettingChange(0, "learning_rate", 3e-3, 1e-4),)
-    (refused,) = run.send(("change", "hidden", (3,)))
-    assert isinstance(refused, Refused)
-    assert isinstance(run.send(("change", "augmentation", 7.0))[0], Refused)
-    rates = [each.learning_rate for turn in run for each in kinds(turn, DigitProgress)]
-    assert max(rates) <= 1e-4
-
-
 def test_numbers_that_run_away_end_the_run_with_a_reason(data, tmp_path):
     wild = SMALL.changed(
         optimizer="sgd", learning_rate=1.0, activation="relu", output_activation=False, warm_up_epochs=0.0
@@ -152,8 +141,3 @@ def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     assert training.best is not None
     assert kinds(messages, Validation)[-1].success < training.best - 0.2, "the curve ends with the last one"
     assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
-
-
-def test_without_images_held_out_nothing_is_said_of_what_it_misreads(data):
-    messages = [each for turn in DigitSession.live(SMALL.changed(held_out=0), 4, data=data) for each in turn]
-    assert not kinds(messages, Confusion)

@@ -74,12 +74,6 @@ def test_checkpoints_are_thinned_and_the_first_and_last_are_kept():
     assert max(np.diff(decisions)) <= 2 * 5 + 1
 
 
-def test_the_checkpoint_of_a_moment_is_the_last_one_before_it():
-    history = full_history()
-    assert [history.checkpoint_at(moment).decisions for moment in (-1, 0, 299, 300, 10**9)] == [0, 0, 0, 300, 300]
-    assert History().checkpoint_at(5) is None
-
-
 def same(one, other):
     assert np.array_equal(one.points, other.points)
     assert one.setting_changes == other.setting_changes
@@ -169,13 +163,6 @@ def test_curves_of_other_columns_are_refused(tmp_path):
         rewritten(tmp_path, curves=",".join(columns))
         with pytest.raises(ModelFormatError, match="of another version"):
             History.read(tmp_path)
-
-
-def test_a_history_of_another_version_is_refused_by_name_and_left(tmp_path):
-    (tmp_path / "history.npz").write_bytes(b"of before")
-    with pytest.raises(ModelFormatError, match=r"history\.npz was saved by another version, and is left as it is"):
-        History.read(tmp_path)
-    assert (tmp_path / "history.npz").read_bytes() == b"of before"
 
 
 def test_curves_are_a_table_that_any_program_opens(tmp_path):

@@ -13,7 +13,7 @@ from ai.training.config import ANYWHERE, PRESETS, Config, gym_config
 from ai.training.loop import Training
 from ai.training.run import Keeper, Limit, resume, save
 from ai.training.statistics import wilson
-from ai.training.tasks import TEST_SEED, LanderTask, evaluate
+from ai.training.tasks import TEST_SEED, evaluate
 
 SMALL = PRESETS["modern"].changed(
     hidden=(8,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=500, num_envs=8, spawn="near"
@@ -74,26 +74,6 @@ def test_a_run_that_goes_on_knows_what_it_knew_and_begins_new_flights(tmp_path, 
             assert not np.array_equal(one.observation, training.observation), "its flights are new"
             assert known(on(one, 5)) == known(on(other, 5)), "and follow from the seed and the moment"
             assert one.agent.gradient_steps > training.agent.gradient_steps, "it learns at once"
-
-
-def test_flights_of_a_run_that_goes_on_are_neither_those_of_its_beginning_nor_the_same_each_time(tmp_path):
-    first, training, begins = begun(SMALL), begun(SMALL), []
-    for _ in range(3):
-        begins.append(training.observation)
-        save(on(training, 5), tmp_path / "run")
-        training = resumed(tmp_path / "run")
-    assert np.array_equal(begins[0], first.observation)
-    assert len({begin.tobytes() for begin in begins}) == 3
-
-
-def test_the_best_network_and_its_score_are_those_of_before(tmp_path, monkeypatch):
-    monkeypatch.setattr(LanderTask, "test_episodes", 4)
-    training = on(begun(SMALL), 30)
-    save(training, tmp_path / "run", final=True)
-    assert training.best is not None
-    again = resumed(tmp_path / "run")
-    assert again.best == training.best
-    assert np.array_equal(again.best_agent().online.values, training.best_agent().network.values)
 
 
 def test_of_what_is_too_large_the_newest_is_kept(tmp_path, monkeypatch, subtests):

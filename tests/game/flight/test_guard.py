@@ -129,7 +129,7 @@ def test_a_craft_hangs_until_a_plan_is_found_but_not_for_long(agent):
 
 def test_it_says_since_when_no_plan_is_held(agent):
     flight = fly(guarded(agent), lambda _: Push(), most=4)
-    flight.env.world.gravity = 2 * flight.env.world.gravity  # so that no plan is on its way any more
+    flight.chooser.copilot.forget()
     flight.chooser.guard.ahead.known = lambda: dict.fromkeys(KEYS, Future(None))
     fly(flight, lambda _: Push(), most=20)
     assert why_not_saved(flight) == texts.GUARDIAN_BARE.format(since="0.1")

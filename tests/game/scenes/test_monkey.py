@@ -22,6 +22,7 @@ def test_a_monkey_finds_no_fault_and_leaves_nothing_behind(folder: Path):
     assert len(monkey.visits) > 8  # scenes
 
 
+@pytest.mark.slow
 def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
     def fail(*_: object) -> None:
         raise ZeroDivisionError("a fault on purpose")

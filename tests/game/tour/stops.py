@@ -88,7 +88,7 @@ STOPS = [
         Stop(name, "with much to list", keys(pygame.K_DOWN), prepare=listed)
         for name in ("LogbookScene", "MissionsScene", "NetworksScene")
     ),
-    Stop("NetworksScene", "naming", lambda driver: driver.press_on(texts.RUN_RENAME)),
+    Stop("NetworksScene", "naming", lambda driver: driver.press_on(texts.RUN_RENAME), prepare=stock),
     Stop("BindingsScene", "binding", keys(pygame.K_RETURN)),
     Stop("WatchScene", "stopped", keys(pygame.K_SPACE)),
     Stop("WatchScene", "touched", touched),

@@ -40,6 +40,8 @@ def walk(driver: Driver, screen: str, device: str) -> None:
             player.press("back")
     if "PauseScene" in player.top_name:
         player.choose(texts.PAUSE_LEAVE)
+    elif player.app.scenes.running:
+        player.press("confirm")  # Quit, to which the title has led
     assert not player.app.scenes.running, "there is no way out"
 
 
