@@ -1,5 +1,6 @@
 """What a step takes over from the last one: which points are the same, and which take the place of others."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -96,3 +97,20 @@ def test_impulses_of_other_worlds_and_pairs_are_no_ones():
         now = contacts((A, B), (1, 2))
         narrow.warm_start(now, last, pass_on=True)
         assert now.impulse.tolist() == [[0, 0, 0]]
+
+
+def test_with_other_parameters_no_impulse_is_taken_over():
+    rested, fresh = (World(gravity=(0.0, -9.81), iterations=2, sleeping=False) for _ in range(2))
+    for world in (rested, fresh):
+        world.add(Polygon.box(30.0, 2.0), (0.0, -1.0), static=True)
+        for row in range(3):
+            world.add(BOX, (0.3 * row, 1.0 + 2.0 * row), friction=0.5)
+    advance(rested, 60)
+    slippery = replace(rested.params, friction=np.full(4, 0.1))
+    rested.params = fresh.params = slippery
+    for name, value in vars(rested.state).items():
+        setattr(fresh.state, name, value.copy())
+    for world in (rested, fresh):
+        world.step()
+    assert np.array_equal(rested.state.velocity, fresh.state.velocity)
+    assert np.array_equal(rested.contacts.impulse, fresh.contacts.impulse)

@@ -65,3 +65,17 @@ def test_pushes_solve_the_linear_complementarity_problem():
     assert (gained >= lacking - 1e-9).all()
     assert np.abs(pushes * (gained - lacking)).max() < 1e-9
     assert (pushes == 0).any(axis=0).mean() > 0.2
+
+
+def test_a_point_that_no_longer_counts_keeps_no_impulse():
+    world = World(gravity=(0.0, -9.81))
+    world.add(Polygon.box(8.0, 1.0), (0.0, -0.5), static=True)
+    stick = world.add(Polygon.box(0.002, 1.0), (0.0, 0.499), 0.05, mass=3.0)
+    world.step()
+    world.contacts.impulse[...] = 1.0  # as if both had pushed until now
+    stick.velocity = (0.0, -1.0)
+    world.step()
+    contacts = world.contacts
+    assert contacts.valid.all()
+    shallower = int(contacts.depth[0].argmin())
+    assert contacts.impulse[0][shallower] == 0.0

@@ -160,3 +160,13 @@ def test_a_push_of_shares_has_the_nearest_action():
     for key in KEYS:
         assert Push.of(*key.shares) == key
     assert Push.of(0.3, -0.9).action == nearest_action(0.3, -0.9)
+
+
+def test_one_that_stands_has_not_landed_before_all_that_comes_first_is_pushed(agent):
+    env = low(start=(0.0, 2.57, 0.0, 0.0, 0.0, 0.0))
+    while env.still_steps[0] < 5:
+        env.fly(np.zeros(1, int))
+    assert env.outcome[0] == Outcome.FLYING
+    (plan,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[0], KEYS[0], KEYS[0], *(KEYS[3],) * 12))])
+    pushed = [Push.of(*shares).action for shares in plan.shares[:15].tolist()]
+    assert pushed == [0] * 3 + [3] * 12

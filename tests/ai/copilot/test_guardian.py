@@ -242,3 +242,16 @@ def test_an_environment_of_another_size_or_rhythm_is_refused(agent):
             copilot.decide(env.observe()[:1], [1], env=env)
     with pytest.raises(ValueError, match="shares"):
         copilot.share(flights(1).observe(), [1], shares=np.zeros((1, 3)))
+
+
+def test_plans_taken_over_are_void_under_other_rules_as_well(agent):
+    env, first = flights(1), CoPilot(agent, GUARD, Mode.GUARDIAN)
+    first.decide(env.observe(), [3], env=env)
+    assert first.guardians[0].plan is not None
+    env.fly(np.array([3]))
+    env.conditions = Conditions(wind=0.05)
+    second = CoPilot(agent, GUARD, Mode.GUARDIAN)
+    second.hold_plans_of(first)
+    decision = second.decide(env.observe(), [1], env=env, known=[{}])
+    assert decision.held is not None
+    assert not decision.held[0]

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.fix import ENOUGH, STEPS, Fixed, FixStep, fix
+from ai.digits.fix import COPIES, ENOUGH, STEPS, Fixed, FixStep, fix
 from ai.digits.mnist import load_part
+from ai.nn import NeuralNetwork
 
 CLASSIC = Path(__file__).parents[3] / "models" / "digits" / "classic"
 
@@ -68,3 +69,15 @@ def test_what_is_no_drawing_or_no_digit_is_refused(tmp_path, data):
     for image, digit in ((0 * ones, 3), (np.nan * ones, 3), (ones, 10), (ones, -1)):
         with pytest.raises(ValueError, match=r"digit|learn"):
             list(fix(CLASSIC, image, digit, tmp_path, train=data, test=data))
+
+
+def test_it_learns_the_drawing_as_it_is_and_bent_in_other_ways(tmp_path, data, misread, monkeypatch):
+    batches, train = [], NeuralNetwork.train_batch
+    monkeypatch.setattr(
+        NeuralNetwork, "train_batch", lambda network, x, *given: batches.append(x) or train(network, x, *given)
+    )
+    fixed(data, misread, tmp_path / "fixed")
+    for batch in batches:
+        copies = batch.reshape(len(batch), -1)[:COPIES]
+        assert np.array_equal(copies[0], misread[0].ravel())
+        assert len(np.unique(copies, axis=0)) == COPIES

@@ -70,6 +70,7 @@ def test_rock_that_hangs_is_struck_from_below_and_lies_over_open_ground():
 
 def test_the_tank_goes_from_leg_to_leg_and_a_better_landing_brings_more():
     assert refill(100, bare=False) > refill(50, bare=False) > refill(0, bare=False) > 0 == refill(300, bare=True)
+    assert refill(300, bare=False) == refill(100, bare=False)
     after = LegStart(3, 9.0).after(6.5, 60, bare=False)
     assert after == LegStart(4, round(2.5 + refill(60, bare=False), 3))
     assert LegStart(3, TANK).after(0.5, 100, bare=False).tank == TANK  # no more than it holds
@@ -112,3 +113,13 @@ def test_the_network_lands_the_first_legs_and_so_do_slow_hands():
     agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
     assert descend(0, agent, QUICK, most=3).legs == 3
     assert descend(0, ScriptedPilot(), SLOW, most=2).legs == 2
+
+
+def test_one_that_touches_rock_overhead_softly_is_not_down():
+    flown = leg(0, 4)
+    corners = np.array(flown.ground.roofs[0])
+    env = put(flown.begin(TANK), (corners[:, 0].mean(), corners[:, 1].min() - 1.6, 0, 2.0))
+    fly(env, steps=90)
+    assert env.outcome[0] == Outcome.CRASHED
+    assert (env.impact[0, :2] < env.limits.touch_speed).all()
+    assert not env.intact[0]

@@ -8,9 +8,9 @@ import pytest
 from ai.lander.environment import LIMITS, NUM_ACTIONS, PARAMS, Cause, LanderEnv, Outcome
 from ai.lander.rewards import RewardWeights
 from ai.lander.rules import ACTION_SHARES, MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, nearest_action
-from ai.lander.spawns import Curriculum
+from ai.lander.spawns import Curriculum, _away
 from engine import DT
-from tests.support.landers import STAND, fly, placed
+from tests.support.landers import STAND, fly, placed, put
 
 SOME = np.array([3, 12, 1, -1, 0.2, 0.1])
 
@@ -84,6 +84,21 @@ def test_leaving_the_area_and_running_out_of_time():
     result = fly(env)
     assert env.outcome.tolist() == [Outcome.OUT_OF_BOUNDS] * 2 + [Outcome.TIMED_OUT]
     assert (result.terminated.tolist(), result.truncated.tolist()) == ([True, True, False], [False, False, True])
+    assert env.steps[2] == round(LIMITS.time / DT), "not a step later"
+
+
+def test_a_start_that_leads_away_does_so_by_speed_lean_and_spin():
+    rng = np.random.default_rng(2)
+    starts = np.array([_away(rng) for _ in range(40)])
+    x, _, vx, _, angle, spin = starts.T
+    env = put(
+        LanderEnv(len(starts), 0, frame_skip=1), *np.column_stack([0 * x, 0 * x + 15, 0 * vx, 0 * vx, angle, 0 * spin])
+    )
+    env.step(np.full(len(starts), 3))
+    assert (np.sign(x) == np.sign(vx)).all()
+    assert (np.sign(x) == np.sign(env.velocity[:, 0])).all(), "its main engine pushes it away"
+    assert (np.sign(angle) == np.sign(spin)).all(), "it leans more and more"
+    assert 10 < (x > 0).sum() < 30
 
 
 def test_a_flight_is_the_same_alone_and_in_a_batch():

@@ -190,3 +190,12 @@ def test_a_batch_of_one_is_predicted_as_among_others_whatever_became_of_the_netw
         np.testing.assert_allclose(some.predict(x[1:2]), some.predict(x)[1:2], rtol=1e-12)
         some.values = rng.normal(size=network.values.shape)
         np.testing.assert_allclose(some.predict(x[1:2]), some.predict(x)[1:2], rtol=1e-12)
+
+
+def test_the_gradient_of_an_input_leaves_those_of_the_parameters():
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(Gain(2), FullyConnectedLayer(2, 1), Gain(1))
+    network.forward_propagate(XOR_X)
+    network.backward_propagate(np.ones((4, 1)))
+    before = network.gradients.copy()
+    network.input_gradient(XOR_X, 2.0 * np.ones((4, 1)))
+    np.testing.assert_array_equal(network.gradients, before)

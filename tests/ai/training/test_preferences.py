@@ -179,3 +179,34 @@ def test_a_session_asks_and_takes_answers_to_what_it_asked():
     assert then.liking.shape == (len(SUMS),)
     assert not [message for message in session.send(("choose", 0, FIRST)) if isinstance(message, Asked)]
     session.close()
+
+
+def test_answers_given_in_a_row_are_each_learned_from():
+    upbringing = asked()
+    while not upbringing.resting:
+        upbringing.advance()
+    decisions = upbringing.agent.decisions
+    for _ in range(2):
+        upbringing.answer(FIRST)
+    while not upbringing.resting:
+        upbringing.advance()
+    assert upbringing.agent.decisions == decisions + 2 * bringing_up.EACH
+
+
+def test_each_start_is_asked_about_once():
+    upbringing, starts = asked(), set()
+    for _ in range(4):
+        starts.add(upbringing.question[0].poses[0].tobytes())
+        upbringing.answer(FIRST)
+    assert len(starts) == 4
+
+
+def test_where_one_has_landed_one_does_what_it_did_and_the_others_do_not():
+    upbringing = asked()
+    start, actions = np.array([0.0, 5.0, 0.0, -0.3, 0.0, 0.0]), np.array([3, 0, 1, 3, 2, 0, 3])
+    upbringing._landings.append((start, actions))
+    pairs = upbringing._scout()[0]
+    flights = [pairs[0][0], *(pair[1] for pair in pairs[:2])]
+    again = [flight.actions[: len(actions)].tolist() == actions.tolist() for flight in flights]
+    assert again == [False, False, True]
+    assert all(flight.poses[0] == pytest.approx([0.0, 5.0, 0.0]) for flight in flights)

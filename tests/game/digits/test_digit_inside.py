@@ -211,6 +211,22 @@ def test_what_is_said_of_ink_is_true(why_not: Driver, classic, monkeypatch):
         assert f"{figure(float(after[7]))} instead of {figure(float(before[7]))}" in said
 
 
+def test_the_map_says_what_is_for_the_asked_digit_and_what_is_for_the_answer(why_not: Driver, classic):
+    why_not.key(pygame.K_7)
+    top = measured(why_not)
+
+    def lead(image) -> float:
+        scores = classic.network.predict(classic.shaped(image))[0]
+        return float(scores[7] - scores[9])
+
+    for inked, says in ((True, -1), (False, 1)):  # ink that is for it makes the lead less when it is taken away
+        shown = np.where((top.image > 0) == inked, top.says, 0.0)
+        for place in (shown.argmin(), shown.argmax()):
+            row, column = np.unravel_index(place, shown.shape)
+            gained = lead(top.contrast.changed(int(row), int(column), 1 - inked)) - lead(top.image)
+            assert np.sign(gained) == says * np.sign(shown[row, column]) != 0
+
+
 def test_its_own_answer_is_not_asked_about(why_not: Driver, written: list[str]):
     why_not.key(pygame.K_9)
     top = measured(why_not)

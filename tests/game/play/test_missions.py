@@ -13,6 +13,7 @@ from game.core.scene import Pop
 from game.explain.readouts import flight_readouts
 from game.flight import flight_file
 from game.flight.choosers import Recorded
+from game.flight.foresight import surface_height
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
 from game.scenes.logbook.scene import LogbookScene
@@ -149,6 +150,15 @@ def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
     env.outcome[:] = Outcome.LANDED
     assert landing_score(env) == 100
     assert flight_readouts(env)["drift"].figure == "0.0"
+
+
+def test_the_surface_that_is_drawn_moves_with_its_pad():
+    env = begun(0, None, mission="ferry").env
+    env.steps[:] = 60 * 4
+    edge = env.ground.pads[0].right
+    assert abs(env.pad_shift[0]) > 0.5
+    assert surface_height(env, edge - 0.1 + env.pad_shift[0]) == env.ground.pads[0].top
+    assert surface_height(env, edge + 0.1 + env.pad_shift[0]) < env.ground.pads[0].top
 
 
 def test_what_surrounds_a_flight_is_said():

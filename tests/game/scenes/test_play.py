@@ -100,6 +100,22 @@ def test_the_key_that_opened_the_flight_does_not_also_begin_it(open_game: Open):
     assert not play(driver).waiting
 
 
+def test_a_key_that_is_held_through_a_pause_must_be_let_go_first(begin: Open):
+    driver = begin(Steady())
+    press(driver, pygame.K_SPACE)
+    driver.frames(10)
+    flown = steps(driver)
+    assert flown > 0
+    driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    driver.frames(10)
+    assert play(driver).waiting
+    let_go(driver, pygame.K_SPACE)
+    driver.frames(2)
+    press(driver, pygame.K_SPACE)
+    driver.frames(2)
+    assert not play(driver).waiting
+
+
 def test_after_a_crash_a_key_flies_the_same_start_again_and_after_a_landing_enter_a_new_one(begin: Open):
     driver = begin()
     began = play(driver).flight.poses.before.copy()
