@@ -107,15 +107,13 @@ class FlightPauseScene(PauseScene):
         if flown.helps:
             now = HELP.index(flown.helped.help)
             panel.choice(texts.CHOICES_HELP, [texts.HELP[word] for word in HELP], now, self._choose_help)
-            panel.aside(lambda: self._flight.lack or texts.HELP_MEANS[flown.helped.help])
+            panel.aside(lambda: self._flight.lack)
         if self._flight.challenge.rules.free:
             pads = texts.CHOICES_PADS_WORDS
             panel.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), self._choose_pads)
             if not settings.three_pads:  # among hills, all begin from anywhere
                 rung, rungs = max(0.0, settings.rung), (0.0, float(TOP_RUNG))
                 panel.slider(texts.CHOICES_LADDER, rung, rungs, self._choose_rung, step=1.0, figure=_rung)
-            if flown.begun:
-                panel.aside(texts.CHOICES_LATER)
         if self._flight.words.next:
             panel.button(texts.TUTORIAL_LEAVE, self._flight.leave_challenge)
         elif not flown.credit.alone:
@@ -125,8 +123,8 @@ class FlightPauseScene(PauseScene):
     def _write_about(self, cursor: Cursor) -> None:
         """Write which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
-        cursor.styled(head.caption, SMALL, MUTE)
         if not self._flight.challenge.rules.free:
+            cursor.styled(head.caption, SMALL, MUTE)
             cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
             cursor.styled(words, SMALL, MUTE)

@@ -279,10 +279,10 @@ CHECKERS: tuple[Callable[[Visit], None], ...] = (
     a_craft_hangs_while_its_window_changes,
     at_first_sight_there_is_little_to_read_and_to_choose_from,
     drawing_changes_nothing_but_pixels,
+    texts_fit_in_windows_of_any_shape,
     hints_name_the_players_own_keys,
     hints_name_the_keys_of_their_own_actions,
     the_key_the_button_and_the_click_run_the_same_action,
-    texts_fit_in_windows_of_any_shape,
 )
 IN_HAND = {"WatchScene, explained"}  # the lander is held there: keys move it, and hints say so
 FLYING = {"Play, flown by the network"}
