@@ -15,6 +15,7 @@ from game.core.catalogue import capital
 
 _LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
 _GOOD: Final = 0.4  # of a limit, up to which a landing is a good one
+_LAST: Final = 5.0  # metres above the ground in which the advice on a hard touch would have helped
 TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the fall: that came first
 
 
@@ -33,7 +34,7 @@ class OutcomeCard:
     score: str = ""
     medal: int = 0  # 3 for gold, 2, 1, 0 for none
     intact: bool = False  # whether the craft came down whole beside the pad
-    climb: str = ""  # what the flight has changed on the ladder of starts
+    climb: str = ""  # what the flight has changed on the ladder of starts, or the goal that it has reached
     compared: dict[str, str] = field(default_factory=dict)  # what others did from the same start, by their names
 
 
@@ -47,7 +48,7 @@ def outcome_card(env: LanderEnv) -> OutcomeCard:
         reason = reason.format(where=_where_left(env))
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
-    advice, figures = texts.ADVICE.get(cause_of(env).name, ""), flight_figures(env)
+    advice, figures = "" if _late(env) else texts.ADVICE.get(cause_of(env).name, ""), flight_figures(env)
     if outcome is not Outcome.LANDED:
         return OutcomeCard(False, title, reason, figures, advice, intact=intact)
     met = qualities(env)
@@ -110,6 +111,12 @@ def cause_of(env: LanderEnv) -> Cause:
 
 def _tipped(env: LanderEnv) -> bool:
     return bool(env.impact[0, 2] > TIPPED)
+
+
+def _late(env: LanderEnv) -> bool:
+    """Whether a craft came down too fast to be braked in the last metres, of which the advice speaks."""
+    fastest = env.limits.touch_speed**2 + 2 * _LAST * env.params.main_thrust / env.params.mass
+    return cause_of(env) is Cause.HARD and float(env.impact[0, 0]) ** 2 > fastest
 
 
 def _exceeded(env: LanderEnv) -> dict[Cause, tuple[float, float]]:

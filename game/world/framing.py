@@ -31,7 +31,7 @@ def framed(env: LanderEnv, clear: ClearArea = ALL) -> CameraTarget:
         left += weight * (min(left, edges[0] - _BESIDE) - left)
         right += weight * (max(right, edges[1] + _BESIDE) - right)
     top = max(y, ahead_y) + _AROUND
-    for edge in near_edges(env):  # an edge of the area comes into view as the craft comes near
+    for edge in near_edges(env):  # what is left up to an edge of the area comes into view as the craft comes near
         near = min(1.0, 1.6 * (1 - edge.away / NEAR))
         weight = near * near * (3 - 2 * near)  # eases in and out
         left += weight * (min(left, edge.place - _AROUND) - left) * (edge.side == "left")

@@ -15,7 +15,7 @@ from game.world import framing
 from game.world.callouts import draw_factors, draw_words
 from game.world.camera import WIDEST, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
-from game.world.landscape.ground import draw_edges, draw_ground
+from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
 from game.world.particles import DUST
 from game.world.stage import Stage, flames
@@ -108,7 +108,6 @@ class Scenery:
         landscape(canvas.surface.get_size(), self._look).draw(canvas, self._camera, alpha, earth)
         view = self.view(canvas.scale, alpha).filling(canvas)
         draw_ground(canvas, view, env.ground, float(env.pad_shift[0]))
-        draw_edges(canvas, view, env, canvas.palette.warn)
         if env.conditions.pushes and not self.calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
 

@@ -35,23 +35,25 @@ _LOW: Final = 480.0  # points of a window in which the figures are left out, so 
 class ShownCard:
     """Card on the screen: `shown` 0 to 1 of the way in, with its `hints` at the foot.
 
-    `advise` is whether advice is wanted.
+    `advise` is whether advice is wanted, `aside` whether a craft at the right needs the card at the left.
     """
 
     card: OutcomeCard
     hints: Sequence[Hint]
     shown: float = 1.0
     advise: bool = True
+    aside: bool = False
 
     def box(self, canvas: Canvas) -> pygame.FRect:
-        """Return the card's box, in points of a canvas for text that flows: at the right, or at the top."""
+        """Return the card's box, in points of a canvas for text that flows: at a side, or at the top."""
         view = canvas.view
         width = min(_WIDEST, view.width - 2 * _AROUND)
         rows = Cursor(0.0, 0.0, width - 2 * _MARGIN, canvas.scale)
         self._write(rows, low=view.height < _LOW)
         height = rows.y + 29.0 * len(hint_lines(self.hints, canvas, (0.0, 0.0), rows.width)) + 16
         narrow = view.width < _NARROW
-        left = view.centerx - width / 2 if narrow else view.right - 3 * _AROUND - width
+        side = view.left + 3 * _AROUND if self.aside else view.right - 3 * _AROUND - width
+        left = view.centerx - width / 2 if narrow else side
         top = view.top + _KEYS if narrow else max(view.top + _AROUND, min(_TOP, (view.height - height) / 3))
         return pygame.FRect(left, top - 10 * (1 - self.shown), width, height)
 

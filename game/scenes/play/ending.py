@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ai.environment import Doubles
+from ai.lander.environment import Outcome
 from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET
@@ -20,6 +21,7 @@ from game.world.paths import draw_faint
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
+_RETRACED: Final = 60  # steps in which the path of a landing is drawn once more
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 _STRIDE: Final = 4  # steps between points of a path
 _DIM: Final = 0.62  # as the past must not outshine the present
@@ -53,6 +55,13 @@ class FlightEnding:
         if since <= 0:
             return 0.0
         return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
+
+    @property
+    def retraced(self) -> float:
+        """How much of the path is drawn, 0 to 1: once a landing's card is there, it is drawn once more in a second."""
+        since = self._since - _CARD_AFTER
+        landed = self._flight.outcome is Outcome.LANDED
+        return min(1.0, since / _RETRACED) if landed and since > 0 and not self.calm else 1.0
 
     @property
     def shot(self) -> CameraTarget | None:
@@ -91,14 +100,20 @@ class FlownPath:
         """The path so far: positions (k, 2) in metres."""
         return np.array(self._points)
 
-    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles]) -> None:
-        """Draw the path, and a diamond where the co-pilot stepped in, below the head."""
-        pixels, start = view.pixels(self.places), 0
-        for hand, run in groupby(self._hands):
+    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles], share: float = 1.0) -> None:
+        """Draw that share of the path and a light at its tip; or all, and a diamond where the co-pilot stepped in."""
+        count = max(2, round(share * len(self._points)))
+        pixels, start = view.pixels(self.places[:count]), 0
+        for hand, run in groupby(self._hands[: count - 1]):
             end = start + len(list(run))
             colour = HUMAN if hand is StickHolder.HUMAN else NET
             draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * ClearArea.head)
             start = end
+        if share < 1:
+            tip = view.points(self.places[count - 1]).tolist()
+            canvas.glow(tip, 16, HUMAN, 0.6)
+            canvas.dot(tip, 3.5, HUMAN)
+            return
         for place in moments:
             spot = view.points(place).tolist()
             if spot[1] > canvas.view.top + ClearArea.head:

@@ -334,7 +334,7 @@ class FlownFlight:
         if self.ghost:
             self.ghost.draw_way(world, view)
         if flight.over:
-            self.path.draw(world, view, self.interventions.moments)
+            self.path.draw(world, view, self.interventions.moments, self.ending.retraced)
         thinks = self.thinks or (whole and self.copilot_panel.shown and not flight.over)
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)

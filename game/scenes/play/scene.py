@@ -17,6 +17,7 @@ from game.explain.explained import Explained
 from game.flight import networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
+from game.flight.goals import Goals
 from game.flight.logbook import Records, ladder_rung
 from game.flight.outcomes import OutcomeCard
 from game.input.controls import Command, translate
@@ -71,9 +72,10 @@ class PlayScene(Scene):
         entries = self._records.entries()
         if self._records.problem:
             context.note(self._records.problem)
-        self._sitting = Sitting(entries)
+        self._sitting, self._goals = Sitting(entries), Goals(entries)
         new = seed is None and not context.settings.tutored
-        usual = Race(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
+        free = FreeFlight(context.settings, self._goals)
+        usual = Race(rival, rival_name) if rival else Tutorial() if new else free
         ladder_rung(context.settings, entries)
         self._take(challenge or usual)
         self._load_network()
@@ -275,7 +277,8 @@ class PlayScene(Scene):
         if ending.card is None or ending.shown == 0:
             return None
         hints = hints_of(self._card_actions(), self._controls)
-        return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints)
+        aside = ending.calm and self._across > self.context.reading().view.centerx  # the camera stays where it is
+        return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints, aside)
 
     @property
     def _head(self) -> Head:
@@ -357,7 +360,7 @@ class PlayScene(Scene):
         """End the tutorial, which is not offered again; free flights follow."""
         self._settings.tutored = True
         self.context.apply_settings()
-        self._take(FreeFlight(self._settings))
+        self._take(FreeFlight(self._settings, self._goals))
         self._begin_anew()
 
     def _accept_help(self) -> None:

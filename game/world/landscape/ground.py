@@ -1,4 +1,4 @@
-"""Ground of a flight: hills and knolls in front of the plain, the pads, and the edges of the area."""
+"""Ground of a flight: hills and knolls in front of the plain, and the pads."""
 
 from __future__ import annotations
 
@@ -10,14 +10,12 @@ from typing import Final
 import numpy as np
 
 from ai.environment import Doubles
-from ai.lander.environment import LanderEnv
 from ai.lander.ground import Ground, Pad, half_plane
-from ai.lander.sensing import NEAR, near_edges
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE, Picture, Sheet, bell, slopes
 from game.drawing.paint_cache import InPieces, Steps, idle
-from game.drawing.tokens import INK, Colour
-from game.world.camera import GROUND_LINE, LAND_REACH, WORLD_WIDTH, View
+from game.drawing.tokens import INK
+from game.world.camera import LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
 from game.world.landscape.sheet import WorldPicture
 from game.world.landscape.sky import SUN
@@ -193,17 +191,3 @@ def _softened(row: Picture, width: float) -> Picture:
     blur = np.hanning(2 * round(width) + 1)
     soft: Picture = np.convolve(np.pad(row, len(blur) // 2, "edge"), blur / blur.sum(), "valid").astype(np.float32)
     return soft
-
-
-def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> None:
-    """Draw a line along every edge of the area near the craft, brighter the nearer it is."""
-    seen = canvas.view
-    for edge in near_edges(env):
-        if edge.side == "above":
-            _, row = view.point(0.0, edge.place)
-            start, end = (seen.left, row), (seen.right, row)
-        else:
-            column, foot = view.point(edge.place, GROUND_LINE)
-            start, end = (column, seen.top), (column, foot)
-        for width, share in ((1.5, 0.9), (7.0, 0.3), (18.0, 0.15)):
-            canvas.line(start, end, colour, width, share * (1 - edge.away / NEAR))

@@ -1,6 +1,8 @@
 """The first ten flights: the ladder, the offer of help, a craft that hangs after every interruption, and the rescue."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pygame
@@ -16,8 +18,10 @@ from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
+from game.flight.goals import Goals
 from game.flight.logbook import ladder_rung
 from game.scenes.menus.menu import FlightsScene
+from game.scenes.play.ending import FlownPath
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.sitting import CRASHES
@@ -218,3 +222,57 @@ def test_a_guard_is_called_by_the_player_and_a_landing_with_it_ends_the_first_fl
     end(driver, ON_PAD)
     assert (play(driver).ending.card.title, challenge.rules.through) == (texts.TUTORIAL_SAVED_TITLE, True)
     assert driver.app.context.settings.help == "off"
+
+
+# After the ladder
+
+
+def test_goals_grow_with_ones_own_landings_and_the_best_of_day_and_week_is_told():
+    landing = Entry(1e9, "LANDED", 20.0, 8.0, 1.0, 1.0, alone=True, score=85)
+    goals = Goals([landing, *(replace(landing, score=99, **other) for other in OTHERS)])
+    assert goals.next == texts.GOALS["fuel"].format(value=4.5)
+    assert not goals.add(replace(landing, outcome="CRASHED", fuel=1.0))
+    assert goals.add(replace(landing, fuel=4.0, score=70))
+    assert goals.next == texts.GOALS["seconds"].format(value=12)
+    assert goals.bests(1e9) == {name: texts.SCORE.format(count=85) for name in (texts.CARD_TODAY, texts.CARD_WEEK)}
+    assert goals.bests(1e9 + 30 * 86400) == {}
+    assert not Goals([replace(landing, score=99, fuel=1.0, seconds=5.0)]).next
+
+
+OTHERS: list[dict[str, Any]] = [{"alone": False}, {"course": "wind"}, {"spawn": "rung_3"}]
+
+
+@pytest.mark.parametrize("calm", [False, True])
+def test_a_goal_is_said_before_the_flight_and_on_the_card_whose_path_is_drawn_once_more(
+    open_game: Open, written: list[str], monkeypatch: pytest.MonkeyPatch, calm: bool
+):
+    shares: list[float] = []
+    draw = FlownPath.draw
+    monkeypatch.setattr(FlownPath, "draw", lambda *given: (shares.append(given[-1]), draw(*given)))
+    driver = open_game(PlayScene, 4)
+    driver.app.context.settings.reduced_motion = calm
+    driver.key(pygame.K_r)
+    driver.frames(2)
+    assert texts.GOALS["score"].format(value=80) in written
+    end(driver, ON_PAD)
+    card = play(driver).ending.card
+    assert card.climb == texts.GOAL_REACHED.format(goal=play(driver)._goals.next)
+    assert {texts.CARD_TODAY, texts.CARD_WEEK} <= set(card.compared)
+    shares.clear()
+    driver.frames(80)
+    assert shares == sorted(shares)
+    assert (shares[0] < 1, shares[-1]) == (not calm, 1)
+    assert texts.CARD_WATCH in driver.hints()
+    driver.key(pygame.K_t)
+    assert driver.top_name == "ReplayScene"
+
+
+@pytest.mark.parametrize("x", [-6.0, 6.0])
+def test_with_reduced_motion_the_card_stands_beside_the_craft(open_game: Open, x: float):
+    driver = open_game(PlayScene, 4)
+    driver.app.context.settings.reduced_motion = True
+    driver.key(pygame.K_r)
+    end(driver, (x, *BESIDE[1:]))
+    shown = play(driver)
+    box, across = shown._card.box(driver.app.canvas.reading), shown._across
+    assert not box.left <= across <= box.right
