@@ -86,7 +86,7 @@ class Earned:
 
     outcome: Outcome  # FLYING if its record stops before
     points: int  # of its landing
-    medal: int  # 3 for gold, 2, 1, in a mission; 0 without a landing, in a free flight, or under other rules
+    medal: int  # 3 for gold, 2, 1, in a mission; 0 without a landing, in a free flight, or where it was eased
     steps: int  # of physics, flown until it ended
     fuel: float  # seconds of main engine
     end: End  # its last pose

@@ -121,6 +121,6 @@ class MissionsScene(PanelScene):
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
-    """Return the player's best unaided landing in each named challenge, under the current rules."""
+    """Return the player's best unaided landing in each named challenge."""
     landings = [entry for entry in entries if entry.course and entry.alone and entry.landed]
     return {entry.course: entry for entry in sorted(landings, key=rank, reverse=True)}
