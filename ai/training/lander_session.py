@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from ai.environment import StepResult
-from ai.lander.environment import LanderEnv
+from ai.lander.environment import LanderEnv, Outcome
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, REVERTED, Checkpoint, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import DIVERGED, NetworkState, SwarmState
+from ai.training.messages import DIVERGED, FirstLanding, NetworkState, SwarmState
 from ai.training.session import Session
 from ai.training.tasks import Score
 
@@ -39,6 +40,7 @@ class LanderSession(Session[Training]):
         self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
+        self._new = not training.agent.decisions  # it has not landed yet
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
 
@@ -83,6 +85,11 @@ class LanderSession(Session[Training]):
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = SwarmState.of(self.env, self.training.agent.decisions)
         self._explanations.follow(self.env.actions, result)
+        landed = np.flatnonzero(result.outcome == Outcome.LANDED)
+        if self._new and len(landed) and self.training.agent.ready:
+            self._new = False
+            with suppress(ValueError):  # a network too large to be explained
+                self.messages.append(FirstLanding(self._explanations.explain(int(landed[0]))))
 
     def _checkpoint(self, success: float) -> Checkpoint:
         agent = self.training.agent

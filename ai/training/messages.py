@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.environment import Floats
+from ai.explain.agent_lesson import Lesson
 from ai.lander.environment import LanderEnv
 
 Command = tuple[Any, ...]
@@ -59,6 +60,13 @@ class NetworkState:
     gradients: Floats  # (parameters,) of its last learning step
     observation: Floats  # (9,) what the lander in slot CAREFUL senses now
     decisions: int
+
+
+@dataclass(frozen=True)
+class FirstLanding:
+    """The lesson of the first landing of a new run from which its network can learn."""
+
+    lesson: Lesson
 
 
 @dataclass(frozen=True)

@@ -109,6 +109,7 @@ class Upbringing(Training):
         self.agent.flown = self._watch
         self._learns_until = self.agent.decisions + BEFORE
         self._pool: list[list[Question]] = []  # for each start
+        self._answered: list[Question] = []
         self._landings: deque[tuple[Doubles, Ints]] = deque(maxlen=_REMEMBERED)  # starts and actions
         self._starts: Doubles = np.zeros((self.env.num_envs, 6))
         self._actions: Ints = np.zeros((self.env.num_envs, _LONGEST), dtype=np.intp)
@@ -152,11 +153,20 @@ class Upbringing(Training):
         if self.question is None or answer not in (FIRST, SECOND, NEITHER):
             raise ValueError("there is no such question")
         first, second = self.question
+        self._answered.append(self.question)
         self.taste.answer(first.sums - second.sums, answer)
         self._learns_until = max(self._learns_until, self.agent.decisions) + EACH
         if len(self.taste.answers) % POOL == 0:
             self._pool = []
         self._ask()
+
+    def take_back(self) -> None:
+        """Take the last answer back, and ask that question again; raises ValueError if there is none."""
+        if not self._answered:
+            raise ValueError("nothing has been answered since this began")
+        self.taste.restore(self.taste.differences[:-1], self.taste.answers[:-1])
+        self._pay()
+        self.question = self._answered.pop()
 
     def _ask(self) -> None:
         """Pay by the taste as it is known now, and ask what would tell most of it; each start is asked about once."""
@@ -270,8 +280,15 @@ class TasteSession(Session[Upbringing]):
         """Take the answer to the question after so many; one to another question is not meant."""
         if answers == len(self.training.taste.answers):
             self.training.answer(answer)
-            self.show()
-            if self.keep is not None:
-                self.keeper.move_to(self.keep)
+            self._changed()
 
-    commands = Session.commands | {"choose": _choose}
+    def _take_back(self) -> None:
+        self.training.take_back()
+        self._changed()
+
+    def _changed(self) -> None:
+        self.show()
+        if self.keep is not None:
+            self.keeper.move_to(self.keep)
+
+    commands = Session.commands | {"choose": _choose, "take_back": _take_back}

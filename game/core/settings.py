@@ -56,6 +56,7 @@ class Settings:
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
     rung: Annotated[int, Within(-1, TOP_RUNG)] = -1  # place on the ladder of starts, from 0; -1 before it is known
     learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.scenes.learn.path writes it
+    lesson_offered: bool = False  # whether a first landing in Train has been stopped at, or could have been
     slow_runs: bool = True  # whether landers in Train learn slowly enough to be watched
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
     unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved

@@ -16,7 +16,7 @@ from ai.files import CONFIG, STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress
-from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
+from ai.training.messages import FirstLanding, NetworkState, Refused, RunStarted, Saved, SwarmState
 from ai.training.upbringing import Asked
 from game.core import texts
 from game.core.shelf import Collection, LibraryError
@@ -32,7 +32,7 @@ AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough
 # Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", Lesson: "lesson",
-    Confusion: "confusion", Asked: "asked",
+    Confusion: "confusion", FirstLanding: "first_landing", Asked: "asked",
 }  # fmt: skip
 _ENTRIES: Final[dict[type, str]] = dict.fromkeys(
     (Progress, DigitProgress, Checkpoint, Validation, SettingChange), "history"
@@ -52,7 +52,7 @@ class TrainingRun:
 
     Attributes:
         config, seed: of the run.
-        swarm_state, network_state, lesson, confusion, asked: the latest message of each kind.
+        swarm_state, network_state, lesson, first_landing, confusion, asked: the latest message of each kind.
         swarms, networks: those of the whole run, as far as they were kept.
         earlier: curves of the run before it, if it had any.
         begun: whether a run has reported its configuration since this was last set to False.
@@ -84,6 +84,7 @@ class TrainingRun:
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
         self.lesson: Any = None
+        self.first_landing: FirstLanding | None = None
         self.confusion: Confusion | None = None
         self.asked: Asked | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)

@@ -45,7 +45,7 @@ def games(context: Context) -> Iterator[OpenGame]:
         context.settings = SettingsFile(context.user_dir).load()
         context.settings.tutored |= tutored  # or a first flight would teach
         if not first_run:  # or it would go slowly, and offer a lesson
-            context.settings.slow_runs = False
+            context.settings.slow_runs, context.settings.lesson_offered = False, True
         if not ladder and context.settings.rung < 0:
             context.settings.rung = TOP_RUNG  # or free flights would begin above the pad
         frames = count()

@@ -21,7 +21,7 @@ from game.world.paths import draw_faint
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
-_RETRACED: Final = 60  # steps in which the path of a landing is drawn once more
+_RETRACED_AFTER, _RETRACED = 40, 60  # steps from a landing's card, and in which its path is drawn once more
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 _STRIDE: Final = 4  # steps between points of a path
 _DIM: Final = 0.62  # as the past must not outshine the present
@@ -58,8 +58,8 @@ class FlightEnding:
 
     @property
     def retraced(self) -> float:
-        """How much of the path is drawn, 0 to 1: once a landing's card is there, it is drawn once more in a second."""
-        since = self._since - _CARD_AFTER
+        """How much of the path is drawn, 0 to 1: beside a landing's card, it is drawn once more in a second."""
+        since = self._since - _CARD_AFTER - _RETRACED_AFTER
         landed = self._flight.outcome is Outcome.LANDED
         return min(1.0, since / _RETRACED) if landed and since > 0 and not self.calm else 1.0
 
@@ -103,7 +103,7 @@ class FlownPath:
     def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles], share: float = 1.0) -> None:
         """Draw that share of the path and a light at its tip; or all, and a diamond where the co-pilot stepped in."""
         count = max(2, round(share * len(self._points)))
-        pixels, start = view.pixels(self.places[:count]), 0
+        pixels, start, colour = view.pixels(self.places[:count]), 0, HUMAN
         for hand, run in groupby(self._hands[: count - 1]):
             end = start + len(list(run))
             colour = HUMAN if hand is StickHolder.HUMAN else NET
@@ -111,8 +111,8 @@ class FlownPath:
             start = end
         if share < 1:
             tip = view.points(self.places[count - 1]).tolist()
-            canvas.glow(tip, 16, HUMAN, 0.6)
-            canvas.dot(tip, 3.5, HUMAN)
+            canvas.glow(tip, 16, colour, 0.6)
+            canvas.dot(tip, 3.5, colour)
             return
         for place in moments:
             spot = view.points(place).tolist()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -78,7 +79,8 @@ class TasteScene(PanelScene):
         panel.gap(6)
         self._row = panel.widget(PairRow(self.pair, self.answer, self._height, self._waits))
         panel.explain(texts.TASTE_HELP["pair"])
-        panel.words([(texts.TASTE_AGAIN, self.pair.again), self.unfolding(_MORE)])
+        again, back = (texts.TASTE_AGAIN, self.pair.again), (texts.TASTE_BACK, self._take_back)
+        panel.words([again, *([back] if self._answers else []), self.unfolding(_MORE)])
         panel.gap(6)
         if self.context.settings.is_open(_MORE):
             panel.words([(texts.TASTE_KEEP, self._keep), (texts.TASTE_ANEW, self._start_anew)])
@@ -89,6 +91,9 @@ class TasteScene(PanelScene):
         left.add(lambda cursor: cursor.caption(texts.TASTE_NOW.format(count=self._answers)))
         left.add(self._write_now, texts.TASTE_HELP["now"])
         right.add(table((texts.TASTE_BELIEVED, "  ←  →  ".join(texts.TASTE_SIDES)), self._likings))
+
+    def state(self) -> Hashable:
+        return super().state(), self._answers > 0
 
     @property
     def _answers(self) -> int:
@@ -132,6 +137,7 @@ class TasteScene(PanelScene):
         words = focused is not None and focused is not self._row and focused.ringed
         return [
             *((each.hint_for(controls) for each in answers) if words else answers),
+            Action(pygame.K_BACKSPACE, self._take_back, gamepad=Command.HANDOVER),
             Action(Command.RETRY, self.pair.again),
             self.form.goes_back(texts.HINT_BACK),
             self.explained.action(),
@@ -145,6 +151,10 @@ class TasteScene(PanelScene):
             self.context.sound.play("choose")
             self.pair.ask(None)
             self.form.focus(self._row)
+
+    def _take_back(self) -> None:
+        if self._answers:
+            self.run.ask("take_back")
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Go on explaining; everything else is the panel's."""

@@ -132,6 +132,11 @@ class Laboratory:
             column.text(texts.LAB_NOT_MISSED.format(why=why) if self.came == "as_well" else why, size=SMALL)
         else:
             column.text(lambda: twin.problem or texts.LAB_TOO_EARLY, size=SMALL, colour=HUMAN)
+        if self.came:
+            names = list(SABOTAGES)
+            following = names[(names.index(self.sabotage) + 1) % len(names)]
+            words = texts.LAB_NEXT.format(name=texts.SABOTAGES[following][0])
+            column.button(words, partial(self._ask, following), colour=HUMAN)
         column.words([(texts.LAB_END, self.end), (texts.BACK, self.close)])
 
 

@@ -17,8 +17,9 @@ from ai.training.experiments import differences, sabotaged
 from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Transition, push
+from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import NIGHT0, SMALL
+from game.drawing.tokens import HUMAN, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.advice import Advice
 from game.scenes.train.charts import LANDER_CHARTS, Beside
@@ -50,6 +51,7 @@ class LanderView(View):
         laboratory: the experiment that was chosen, and what came of it.
         inside: the network.
         rewind: the moment that is shown.
+        offers: whether a first landing can be stopped at.
 
     """
 
@@ -65,6 +67,7 @@ class LanderView(View):
         self.inside = Inside(run, self.rewind)
         self.lessons = LessonDoor(run, self.context.note, self.context.rng)
         self.advice = Advice(run, scene.knobs)
+        self.offers = False
 
     @staticmethod
     def collection(user_dir: Path) -> Library:
@@ -140,7 +143,7 @@ class LanderView(View):
     @property
     def key(self) -> Hashable:  # type: ignore[override]
         begun, hint = len(self.run.history) > 0, self.advice.shown
-        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun
+        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun, self.offers
 
     def describe_first(self, column: Column) -> None:
         self.rewind.describe(column)
@@ -172,6 +175,10 @@ class LanderView(View):
         column.choice("", texts.TRAIN_PACES, PACES.index(self.run.pace), self.scene.set_pace, SMALL)
 
     def describe_hint(self, column: Column) -> bool:
+        if self.offers:
+            column.text(texts.LESSON_OFFER, size=SMALL, colour=HUMAN)
+            column.words([(texts.LESSON_LOOK, self._look), (texts.LESSON_FLY_ON, self._fly_on)])
+            return True
         if hint := self.advice.shown:
             self.advice.describe(column, hint)
         return hint is not None
@@ -208,6 +215,7 @@ class LanderView(View):
             swarm.chosen = slot
 
     def update(self) -> Transition | None:
+        self._offer()
         self.advice.update()
         if self.fills:
             self.inside.update()
@@ -233,6 +241,24 @@ class LanderView(View):
         self.advice.adviser.reset()
 
     # What can be done
+
+    def _offer(self) -> None:
+        """Offer once in a player's life to stop at a first landing, by one key."""
+        run, settings = self.run, self.context.settings
+        if run.first_landing and not settings.lesson_offered and run.state is WorkerState.RUNNING:
+            self.offers = settings.lesson_offered = True
+            self.context.apply_settings()
+            self.scene.build()
+            self.scene.form.focus(next(each for each in self.scene.form.widgets if each.label == texts.LESSON_LOOK))
+        self.offers &= run.alive
+
+    def _look(self) -> Transition:
+        assert self.run.first_landing is not None
+        self.offers = False
+        return push("lesson", self.run.first_landing.lesson, self.lessons)
+
+    def _fly_on(self) -> None:
+        self.offers = False
 
     def _ask_why(self) -> None:
         """Ask for the lesson of the chosen lander, or of the one that explores least, as the run is now."""

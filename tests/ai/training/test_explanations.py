@@ -1,14 +1,17 @@
 """Explanations of a live run: the memory is the one that the run stores, and the run goes on as if nobody had asked."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from ai.explain.agent_lesson import Lesson
+from ai.lander.environment import Outcome
+from ai.training import lander_session
 from ai.training.config import PRESETS
 from ai.training.lander_session import LanderSession
-from ai.training.messages import NetworkState, Refused
+from ai.training.messages import FirstLanding, NetworkState, Refused
 
 CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
                  hidden=(16,), replay_size=5000, spawn="near")  # fmt: skip
@@ -47,6 +50,15 @@ def test_the_memory_lies_in_the_replay_buffer():
         scale = CONFIG.reward_scale * CONFIG.discount ** np.arange(len(flown.rewards))
         assert lesson.cell.reward == pytest.approx(float((scale * flown.rewards).sum()), rel=1e-4, abs=1e-6)
         assert bool(flown.outcome) >= bool(lesson.cell.terminal)
+
+
+def test_the_first_landing_to_learn_from_is_told_once_with_its_lesson(monkeypatch):
+    # So small a run lands too seldom: what it does when it crashes stands for a landing.
+    monkeypatch.setattr(lander_session, "Outcome", SimpleNamespace(LANDED=Outcome.CRASHED))
+    session = run()
+    told = [each for _ in range(300) for each in next(session) if isinstance(each, FirstLanding)]
+    (landing,) = told
+    assert landing.lesson.flown.outcome == Outcome.CRASHED
 
 
 def test_a_run_that_is_asked_goes_on_as_one_that_is_not():

@@ -141,6 +141,18 @@ def test_it_learns_for_a_while_after_an_answer_and_rests_until_the_next():
     assert upbringing.agent.gradient_steps > steps
 
 
+def test_the_question_comes_back_with_the_answer_that_is_taken_back():
+    upbringing = asked()
+    question = upbringing.question
+    with pytest.raises(ValueError, match="nothing"):
+        upbringing.take_back()
+    upbringing.answer(SECOND)
+    assert upbringing.question is not question
+    upbringing.take_back()
+    assert upbringing.question is question
+    assert not len(upbringing.taste.answers)
+
+
 def test_the_same_seed_and_answers_give_the_same_network():
     both = [asked(4) for _ in range(2)]
     for upbringing in both:

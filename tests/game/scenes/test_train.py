@@ -13,15 +13,18 @@ import pytest
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
+from ai.training.messages import FirstLanding
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.explain.network_view import NetworkView
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import PACES, TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
+from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import LANDERS as SMALL
@@ -68,6 +71,34 @@ def test_a_run_goes_slow_or_fast_in_sight(train: Driver, monkeypatch: pytest.Mon
 
 def test_a_first_run_goes_slowly(open_game: Callable[..., Driver]) -> None:
     assert open_game(TrainScene, first_run=True).choice(texts.TRAIN_PACES[0]).index == 0
+
+
+def test_at_the_first_landing_it_offers_once_to_stop_and_look(
+    open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inline_worker.install(monkeypatch.setattr)
+    driver = open_game(TrainScene, first_run=True)
+    driver.frames(2)
+    scene, run = driver.top, driver.top.run
+    scene.knobs.ask(SMALL)
+    learn(driver)
+    at = run.swarm_state.decisions
+    scene.view.lessons.ask(2)
+    driver.wait(lambda: isinstance(driver.top, LessonScene))
+    lesson = driver.top.lesson
+    driver.key(pygame.K_ESCAPE)
+    driver.wait(lambda: driver.top is scene)
+    run.first_landing = FirstLanding(lesson)
+    driver.frames(2)
+    assert driver.form.focused.label == texts.LESSON_LOOK, "one key"
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: isinstance(driver.top, LessonScene))
+    assert driver.top.lesson is lesson
+    assert run.state is WorkerState.PAUSED, "the landers stand still behind it"
+    driver.key(pygame.K_ESCAPE)
+    driver.wait(lambda: run.swarm_state.decisions > at)
+    assert texts.LESSON_LOOK not in [each.label for each in driver.form.widgets]
+    assert driver.app.context.settings.lesson_offered, "never again"
 
 
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(

@@ -50,10 +50,13 @@ def test_a_key_answers_and_another_question_comes(taste, key, answer):
     assert taste.top.pair.question is not question
 
 
-def test_a_click_on_a_flight_likes_it_better(taste):
+def test_a_click_on_a_flight_likes_it_better_and_backspace_takes_that_back(taste):
     taste.frames(2)
     taste.click(taste.top.pair.halves[1].box.center)
     taste.wait(lambda: taste.top.run.asked.answers == 1)
+    taste.key(pygame.K_BACKSPACE)
+    taste.wait(lambda: taste.top.run.asked.answers == 0)
+    assert texts.TASTE_BACK not in [each.label for each in taste.form.widgets], "there is nothing to take back"
 
 
 def test_by_gamepad_alone(taste):
