@@ -87,6 +87,23 @@ def test_leaving_the_area_and_running_out_of_time():
     assert env.steps[2] == round(LIMITS.time / DT), "not a step later"
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_time_is_out_when_the_limits_of_the_flight_say_so(count):
+    env = placed(*[(0, 15)] * count, limits=replace(LIMITS, time=0.5))
+    fly(env)
+    assert (env.outcome == Outcome.TIMED_OUT).all()
+    assert (env.steps == 30).all()
+
+
+@pytest.mark.parametrize(("speed", "counts"), [(0.65, False), (0.4, True)])
+def test_one_that_slides_on_both_feet_stands_still_only_below_the_limit(speed, counts):
+    env = placed((0, STAND, speed))
+    fly(env, steps=5)
+    assert env.feet_down.all()
+    assert bool(env.velocity[0, 0] < LIMITS.rest_speed) is counts
+    assert bool(env.still_steps[0]) is counts
+
+
 def test_a_start_that_leads_away_does_so_by_speed_lean_and_spin():
     rng = np.random.default_rng(2)
     starts = np.array([_away(rng) for _ in range(40)])

@@ -140,6 +140,16 @@ def test_what_stays_of_a_change_leads_back_to_before_it_and_what_was_undone_is_n
     assert RecentCurves(run, MODERN).blamed() == []
 
 
+@pytest.mark.parametrize("harder", [False, True])
+def test_a_change_is_not_blamed_for_what_harder_starts_have_brought(harder: bool):
+    paid = MODERN.turned("reward_weights.time", 5.0)
+    falls = replace(HEALTHY, success_rate=0.2, stage=int(harder))
+    run = history(lambda share: falls if share > 0.55 else HEALTHY)
+    change = SettingChange(200_000, "reward_weights.time", -0.4, 5.0)
+    run.append(change)
+    assert RecentCurves(run, paid).blamed() == ([] if harder else [change])
+
+
 def test_a_rate_that_was_turned_too_high_leads_back_to_before_that():
     run, config = history(points(**CRASHES)), MODERN.changed(learning_rate=1.0, final_learning_rate=1.0)
     rule = RULES[0]
