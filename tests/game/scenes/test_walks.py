@@ -113,6 +113,7 @@ def test_settings_are_changed_and_kept(open_screen, device: str):
     group(player, "controls")
     player.choose(texts.BINDINGS_OPEN)
     assert player.top_name == "BindingsScene"
+    player.press("up", "right", "down")  # everything else
     kind = "keys" if player.device == "keys" else "buttons"
     while player.form.focused.label != texts.BINDINGS["PREVIOUS"]:
         player.press("down")
