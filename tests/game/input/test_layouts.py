@@ -121,6 +121,7 @@ def test_alt_enter_stays_and_a_bound_ctrl_key_holds_nothing_back(open_game: Open
     driver.key(pygame.K_RETURN, pygame.KMOD_LALT)
     assert driver.app.context.settings.full_screen is not before
     driver.key(pygame.K_RETURN, pygame.KMOD_LALT)
+    driver.app.settings_writer.wait()  # or what it writes of before comes last
     context.settings.keys = {"fine": ["lctrl"]}
     context.settings_file.save(context.settings)
     driver = open_game(PlayScene, seed=4)
