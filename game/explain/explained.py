@@ -41,13 +41,13 @@ class Explained:
     """
 
     def __init__(self) -> None:
-        self.stepping = False
+        self.stepping, self._any = False, True
         self._number = self._rest = 0
         self._ready = False  # whether the mouse has rested for long enough
 
     def action(self) -> Action:
         """Return the action that explains the first area; to be the last of a table, as F1 can be bound otherwise."""
-        return Action(pygame.K_F1, self._begin, texts.HINT_EXPLAIN, gamepad=Command.CHOICES)
+        return Action(pygame.K_F1, self._begin, texts.HINT_EXPLAIN if self._any else "", gamepad=Command.CHOICES)
 
     def handle_event(self, event: pygame.event.Event) -> bool:
         """Go on to another area, or end; false for an event that is the scene's."""
@@ -80,7 +80,8 @@ class Explained:
     def draw(self, canvas: Canvas) -> None:
         """Draw the tooltip of the area that is pointed at, or that is the next to be explained."""
         areas = [area for area in canvas.explained if area.box.colliderect(canvas.view)]
-        self.stepping &= bool(areas)
+        self._any = bool(areas)
+        self.stepping &= self._any
         if self.stepping:
             area = areas[self._number % len(areas)]
             canvas.outline(area.box.inflate(8, 6), 6, INK, 1, 0.8)

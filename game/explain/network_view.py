@@ -46,6 +46,7 @@ class NetworkView:
 
     Attributes:
         output_scale: one point of reward, in units of the network's outputs.
+        lit: output in the colour of the chosen one; None for the largest.
         show: quantity that the edges show.
         plan: what is drawn of the network; None before one was set.
         hovered: column and place in it of the highlighted unit.
@@ -57,6 +58,7 @@ class NetworkView:
         self.box = pygame.FRect(box)
         self.inputs, self.outputs = tuple(inputs), tuple(outputs)
         self.output_scale = 1.0
+        self.lit: int | None = None
         self.show: Show = "weights"
         self.plan: NetworkPlan | None = None
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
@@ -224,7 +226,7 @@ def _paint_all(view: NetworkView, light: Canvas, signs: Canvas) -> Generator[Non
             drawn = 0.0
             yield
     yield
-    best, last = plan.best(), len(centres) - 1
+    best, last = plan.best() if view.lit is None else view.lit, len(centres) - 1
     for number in range(len(centres)):
         lights = plan.brightness(number).tolist()
         for place, (centre, lit) in enumerate(zip(centres[number], lights, strict=True)):

@@ -37,6 +37,7 @@ _LEANS: Final = np.radians((22.0, -30.0, 35.0, -15.0))  # of the flights, in tur
 _DRIFT: Final = 2.0  # m/s with which a flight begins, to the side it leans to: out of sight within GOAL if nothing acts
 _SHOVE: Final = (1.2, 0.8)  # m/s and rad/s that a push adds
 _REST: Final = 50  # updates between a flight and the next
+_TOLD: Final = 15  # updates after which a longest flight that goes on is told anew
 _MOST: Final = 6.0
 _NEURON: Final = 0.3  # share of the picture's height for the neuron
 
@@ -157,6 +158,11 @@ class NeuronChapter(Chapter):
         for number, weight in enumerate(HINT):
             self.model.set(number, weight)
         self.changed = True
+
+    def update(self) -> None:
+        super().update()
+        model = self.model  # the longest flight may be the present one, and grow
+        self.changed |= self.tried and model.seconds == model.best[0] and model.age % _TOLD == 0
 
     def why(self) -> str:
         seconds, weights = self.model.best

@@ -76,9 +76,10 @@ class LessonScene(PanelScene):
             column.aside(texts.LESSON_SCALE.format(scale=f"{self.lesson.config.reward_scale:g}"))
 
     def actions(self) -> Table:
+        last = self.current == len(self.parts) - 1
         return [
             self.form.moves,
-            Action(Command.NEXT, partial(self._turn, 1), texts.LESSON_HINT_CARD),
+            Action(Command.NEXT, partial(self._turn, 1), "" if last else texts.LESSON_HINT_CARD),
             Action(Command.PREVIOUS, partial(self._turn, -1)),
             self.explained.action(),
             self.form.goes_back(texts.HINT_BACK),

@@ -46,7 +46,7 @@ class TargetCard(Card):
         self._lesson, self._network, self.taken, self._scale = lesson, network, taken, scale
         network.gradients[:] = taken.gradient
         self.view = NetworkView((0, 0, 700, _NETWORK), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self.view.output_scale, self._high = scale, _NETWORK
+        self.view.output_scale, self._high, self.view.lit = scale, _NETWORK, int(lesson.cell.action)
         self.weight = _steepest(network)
         self.turn(True)
 

@@ -25,7 +25,7 @@ from game.world.camera import View
 _PICTURE: Final = 400.0  # greatest height
 _LOW: Final = 0.42  # of its width, the picture's height in a narrow window
 _SHARE: Final = 0.42  # of the picture's height that the two bodies fill
-_WIDER: Final = 2.6  # how much more is shown where all boxes are
+_ALL: Final = 0.9  # of the picture that all of them fill
 _LARGE: Final = 60.0  # metres: a box beyond that is the floor's or a wall's
 _ARROW: Final = 84.0  # points of the longest arrow
 _NORMAL: Final = 46.0  # points of a normal
@@ -124,12 +124,15 @@ class PhysicsStepScene(PanelScene):
     def _view(self, scale: float, box: pygame.FRect) -> View:
         record, pair, boxes = self.record, self.pair, self.record.boxes
         if pair is None:
-            return View.within(box, scale, (0.0, 4.0), box.width / record.exhibit.width)
-        small = [body for body in pair.bodies if (boxes[body, 2:] - boxes[body, :2]).max() < _LARGE]
-        both = boxes[[body for body in pair.bodies if record.can_move(body)] or small]
+            per_metre = box.width / record.exhibit.width  # with the ground at its lower edge
+            return View.within(box, scale, (0.0, 0.48 * box.height / per_metre), per_metre)
+        whole = self.piece == "boxes"
+        bodies = range(len(boxes)) if whole else pair.bodies
+        small = [body for body in bodies if (boxes[body, 2:] - boxes[body, :2]).max() < _LARGE]
+        both = boxes[[body for body in small if record.can_move(body)] or small]
         low, high = both[:, :2].min(axis=0), both[:, 2:].max(axis=0)
-        wider = _WIDER if self.piece == "boxes" else 1.0
-        return View.within(box, scale, (low + high) / 2, box.height * _SHARE / float((high - low).max()) / wider)
+        room = _ALL * np.array(box.size) if whole else np.full(2, _SHARE * box.height)
+        return View.within(box, scale, (low + high) / 2, float((room / (high - low)).min()))
 
     def _draw_walls(self, canvas: Canvas, view: View) -> None:
         wide = self.record.exhibit.width / 2

@@ -78,7 +78,6 @@ class TasteScene(PanelScene):
         panel.text(lambda: self.run.problem or texts.TASTE_ASK, size=TITLE)
         panel.gap(6)
         self._row = panel.widget(PairRow(self.pair, self.answer, self._height, self._waits))
-        panel.explain(texts.TASTE_HELP["pair"])
         again, back = (texts.TASTE_AGAIN, self.pair.again), (texts.TASTE_BACK, self._take_back)
         panel.words([again, *([back] if self._answers else []), self.unfolding(_MORE)])
         panel.gap(6)
@@ -128,10 +127,13 @@ class TasteScene(PanelScene):
 
     def actions(self) -> Table:
         """Answer by the arrows, unless they move from word to word."""
+        this, neither, that = (
+            (texts.TASTE_THIS, texts.TASTE_NEITHER, texts.TASTE_THAT) if self.pair.question else [""] * 3
+        )
         answers = [
-            Action(pygame.K_LEFT, partial(self.answer, FIRST), texts.TASTE_THIS, Command.LEFT),
-            Action(pygame.K_DOWN, partial(self.answer, NEITHER), texts.TASTE_NEITHER, Command.DOWN),
-            Action(pygame.K_RIGHT, partial(self.answer, SECOND), texts.TASTE_THAT, Command.RIGHT),
+            Action(pygame.K_LEFT, partial(self.answer, FIRST), this, Command.LEFT),
+            Action(pygame.K_DOWN, partial(self.answer, NEITHER), neither, Command.DOWN),
+            Action(pygame.K_RIGHT, partial(self.answer, SECOND), that, Command.RIGHT),
         ]
         focused, controls = self.form.focused, self.context.controls
         words = focused is not None and focused is not self._row and focused.ringed

@@ -39,6 +39,7 @@ from game.ui.virtual_pointer import VirtualPointer
 if TYPE_CHECKING:
     from game.scenes.train.scene import TrainScene
 
+_OFFERED: Final = 1200  # frames for which a first landing is offered
 INSIDE: Final = "inside"  # what a player can open: the network
 
 
@@ -51,7 +52,7 @@ class LanderView(View):
         laboratory: the experiment that was chosen, and what came of it.
         inside: the network.
         rewind: the moment that is shown.
-        offers: whether a first landing can be stopped at.
+        offers: for how many more frames a first landing can be stopped at.
 
     """
 
@@ -67,7 +68,7 @@ class LanderView(View):
         self.inside = Inside(run, self.rewind)
         self.lessons = LessonDoor(run, self.context.note, self.context.rng)
         self.advice = Advice(run, scene.knobs)
-        self.offers = False
+        self.offers = 0
 
     @staticmethod
     def collection(user_dir: Path) -> Library:
@@ -143,7 +144,7 @@ class LanderView(View):
     @property
     def key(self) -> Hashable:  # type: ignore[override]
         begun, hint = len(self.run.history) > 0, self.advice.shown
-        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun, self.offers
+        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun, self.offers > 0
 
     def describe_first(self, column: Column) -> None:
         self.rewind.describe(column)
@@ -239,6 +240,7 @@ class LanderView(View):
         for part in (self.swarms, self.rewind, self.inside):
             part.clear()
         self.advice.adviser.reset()
+        self.offers = 0
 
     # What can be done
 
@@ -246,19 +248,19 @@ class LanderView(View):
         """Offer once in a player's life to stop at a first landing, by one key."""
         run, settings = self.run, self.context.settings
         if run.first_landing and not settings.lesson_offered and run.state is WorkerState.RUNNING:
-            self.offers = settings.lesson_offered = True
+            self.offers, settings.lesson_offered = _OFFERED, True
             self.context.apply_settings()
             self.scene.build()
             self.scene.form.focus(next(each for each in self.scene.form.widgets if each.label == texts.LESSON_LOOK))
-        self.offers &= run.alive
+        self.offers = max(self.offers - 1, 0) if run.alive else 0
 
     def _look(self) -> Transition:
         assert self.run.first_landing is not None
-        self.offers = False
+        self.offers = 0
         return push("lesson", self.run.first_landing.lesson, self.lessons)
 
     def _fly_on(self) -> None:
-        self.offers = False
+        self.offers = 0
 
     def _ask_why(self) -> None:
         """Ask for the lesson of the chosen lander, or of the one that explores least, as the run is now."""
