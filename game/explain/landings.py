@@ -15,13 +15,12 @@ _WORDS: Final = {True: "lands", False: "lost", None: "unknown"}
 
 
 def draw_landings(
-    canvas: Canvas, lands: Sequence[bool | None], flown: int, left: float, top: float, width: float, who: str
+    canvas: Canvas, lands: Sequence[bool | None], flown: int, left: float, top: float, width: float
 ) -> None:
-    """Draw a row for each action: its name, and whether `who` then flies `lands`; `top` is the first baseline.
+    """Draw a row for each action: its name, and whether the network then `lands`; `top` is the first baseline.
 
     A mark stands beside the one that is `flown`; None is for what is not known yet.
     """
-    canvas.text(texts.LANDINGS_HEADING.format(who=who), (left, top), size=SMALL, colour=MUTE, room=width)
     for action, after in enumerate(lands):
         y, colour = top + FIRST + ROW * action, INK if action == flown else MUTE
         canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, room=NAME - 20)

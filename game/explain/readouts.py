@@ -17,7 +17,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.shapes import Shape
-from game.drawing.tokens import FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NET, NIGHT0, SMALL, STEP, Colour
+from game.drawing.tokens import FIGURE, INK, LABEL, MARGIN, MUTE, NIGHT0, SMALL, STEP, Colour
 from game.flight import outcomes
 
 Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
@@ -244,21 +244,6 @@ def draw_arrow(canvas: Canvas, middle: Point, reach: float, colour: Colour) -> N
 def yours(human: float) -> int:
     """Return a player's share of a flight, 0 to 1, in percent: 0 for none at all, and 100 only for all of it."""
     return round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
-
-
-def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float, who: str) -> None:
-    """Draw the player's share of a flight, and that of `who` else flew it."""
-    you = yours(human)
-    if you:
-        canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN, tabular=True)
-    if you < 100:
-        network = texts.SHARE_NETWORK.format(who=who, percent=100 - you)
-        canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right", tabular=True)
-    edge = width * human
-    if human > 0:
-        canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
-    if human < 1:
-        canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
 
 
 def rate_colour(canvas: Canvas, percent: float) -> Colour:

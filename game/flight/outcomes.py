@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from ai.lander.environment import Cause, LanderEnv, Outcome
-from ai.lander.rules import tenths
+from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, tenths
 from game.core import texts
 from game.core.catalogue import capital
 
@@ -61,10 +61,11 @@ def qualities(env: LanderEnv) -> list[str]:
     """Return what was good about a landing: it was soft, centred, upright, keys of `texts.QUALITIES`."""
     speed, _, tilt = env.impact[0].tolist()
     pad = env.ground.pads[int(env.landed_on[0])]
+    room = pad.width / 2 - FOOT_CENTRE[0] - FOOT_SIZE[0] / 2  # in which both feet are on it
     aside = abs(float(env.position[0, 0] - env.pad_shift[0]) - pad.x)
     met = {
         "soft": speed <= _GOOD * env.limits.touch_speed,
-        "centred": aside <= _GOOD * pad.width / 2,
+        "centred": aside <= _GOOD * room,
         "upright": tilt <= _GOOD * env.limits.touch_tilt,
     }
     return [name for name, good in met.items() if good]

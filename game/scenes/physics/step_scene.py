@@ -124,7 +124,8 @@ class PhysicsStepScene(PanelScene):
     def _view(self, scale: float, box: pygame.FRect) -> View:
         record, pair, boxes = self.record, self.pair, self.record.boxes
         if pair is None:
-            return View.within(box, scale, (0.0, 4.0), box.width / record.exhibit.width)
+            per_metre = box.width / record.exhibit.width  # with the ground at its lower edge
+            return View.within(box, scale, (0.0, 0.48 * box.height / per_metre), per_metre)
         whole = self.piece == "boxes"
         bodies = range(len(boxes)) if whole else pair.bodies
         small = [body for body in bodies if (boxes[body, 2:] - boxes[body, :2]).max() < _LARGE]

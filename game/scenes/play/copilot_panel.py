@@ -14,14 +14,13 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import LINE, NET, SMALL
 from game.explain.landings import draw_landings
 from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
-from game.explain.readouts import draw_share
 from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import SixFutures
-from game.flight.networks import flew, word
+from game.flight.networks import word
 from game.ui.listing import shortened
 
-_SIZE: Final = (280.0, 366.0)
+_SIZE: Final = (280.0, 336.0)
 _TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
 _LEFT: Final = 20  # left edge of the content, from the panel's corner
 _WIDTH: Final = _SIZE[0] - 40
@@ -64,8 +63,7 @@ class CopilotPanel:
         top = max(0.0, min(_TOP, view.bottom - height - 90))
         return pygame.FRect(view.right - side - width, top, width, height)
 
-    def draw(self, canvas: Canvas, share: float | None, network: str = "") -> None:
-        """Draw the panel; `share` is the person's of the flight so far, None before its first step."""
+    def draw(self, canvas: Canvas, network: str = "") -> None:
         box = self.box(canvas)
         left, top = box.left + _LEFT, box.top
         canvas.panel(box)
@@ -78,10 +76,8 @@ class CopilotPanel:
         if self.values:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         else:
-            draw_landings(canvas, self.lands, self.flown, left, top + _VALUES, _WIDTH, flew(network))
+            draw_landings(canvas, self.lands, self.flown, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
         rows = Cursor(left, top + _WHY + 8, _WIDTH, canvas.scale, canvas)
         for line in self.why:
             rows.aside(line)
-        if share is not None:
-            draw_share(canvas, left, box.bottom - 30, _WIDTH, share, flew(network))

@@ -352,7 +352,7 @@ class FlownFlight:
             draw_flight(canvas, self._readouts, shown)
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
-            self.copilot_panel.draw(canvas, flight.share if self.begun else None, self.network.name)
+            self.copilot_panel.draw(canvas, self.network.name)
 
     def _shown(self, *, whole: bool) -> list[str]:
         """Name the read-outs: the four that a pilot needs, and what is left of time and of a small tank; or all."""

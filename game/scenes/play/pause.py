@@ -49,6 +49,11 @@ class PauseScene(PanelScene):
 
     most = 420.0
 
+    @property
+    def title(self) -> str:
+        """What stands above the entries."""
+        return texts.PAUSE_TITLE
+
     def __init__(
         self,
         context: Context,
@@ -67,7 +72,7 @@ class PauseScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        panel.title(texts.PAUSE_TITLE, _TITLE, "extralight")
+        panel.title(self.title, _TITLE, "extralight")
         retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
         rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
@@ -100,14 +105,20 @@ class FlightPauseScene(PauseScene):
         self.explained = Explained()
         super().__init__(context, below, below.retry)
 
+    @property
+    def title(self) -> str:
+        card = self._flight.ending.card
+        return card.title if card else super().title
+
     def describe(self, panel: Panel) -> None:
         super().describe(panel)
-        panel.add(self._write_about)
         flown, settings = self._flight.flown, self.context.settings
+        if not self._flight.challenge.rules.free:
+            panel.add(self._write_about)
         if flown.helps:
             now = HELP.index(flown.helped.help)
             panel.choice(texts.CHOICES_HELP, [texts.HELP[word] for word in HELP], now, self._choose_help)
-            panel.aside(lambda: self._flight.lack)
+            panel.aside(lambda: self._flight.lack or texts.HELP_MEANS[flown.helped.help])
         if self._flight.challenge.rules.free:
             pads = texts.CHOICES_PADS_WORDS
             panel.choice(texts.CHOICES_PADS, pads, int(settings.three_pads), self._choose_pads)
@@ -123,9 +134,8 @@ class FlightPauseScene(PauseScene):
     def _write_about(self, cursor: Cursor) -> None:
         """Write which flight it is, and what is to be known of it."""
         head = head_of(self._flight.flown, (), whole=True)
-        if not self._flight.challenge.rules.free:
-            cursor.styled(head.caption, SMALL, MUTE)
-            cursor.styled(head.name, TEXT, INK)
+        cursor.styled(head.caption, SMALL, MUTE)
+        cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
             cursor.styled(words, SMALL, MUTE)
 

@@ -55,7 +55,7 @@ def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(mo
     flight.step(KEYS[3])
     copilot_panel.follow(flight)
     drawn = Drawn(monkeypatch)
-    copilot_panel.draw(Canvas(pygame.Surface((1280, 720))), 0.5)
+    copilot_panel.draw(Canvas(pygame.Surface((1280, 720))))
     panel = read_panel(drawn)
     assert panel.expected == "–"
     assert {row.figure for row in panel.rows} == {"–"}

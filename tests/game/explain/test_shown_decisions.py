@@ -105,7 +105,7 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
             break
         copilot_panel.follow(flight)
         drawn.clear()
-        copilot_panel.draw(canvas, 0.0)
+        copilot_panel.draw(canvas)
         points = agent.q_values(sensed)[0] / agent.config.reward_scale
         check(read_panel(drawn), points, flight.recording.pushes[-1].action)
         said = any("is kept" in word for word in drawn.words)
