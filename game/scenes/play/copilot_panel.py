@@ -77,7 +77,8 @@ class CopilotPanel:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         else:
             draw_landings(canvas, self.lands, self.flown, left, top + _VALUES, _WIDTH)
-        canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
+        if self.why:
+            canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
         rows = Cursor(left, top + _WHY + 8, _WIDTH, canvas.scale, canvas)
         for line in self.why:
             rows.aside(line)

@@ -31,8 +31,8 @@ MOST = A_FRAME + PIECE  # a piece is begun while the frame's share is not used u
 def in_pieces() -> Iterator[None]:
     """Play as in the game; tests of other things have each picture at once."""
     landscape.cache_clear()
-    finish()  # what other tests have left
     spread(A_FRAME)
+    finish()  # what other tests have left
     yield
     spread(0)
     landscape.cache_clear()
