@@ -13,6 +13,7 @@ import os
 
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"  # before NumPy is imported
 
+import argparse
 from itertools import count
 from typing import Any, Final
 
@@ -97,6 +98,7 @@ def mended(run: Watched) -> tuple[list[str], float, float]:
 
 def main() -> None:
     """Print a line for each fault."""
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     for name, changes in (TURNS | FROM_THE_START).items():
         run = Watched(NEAR if name in TURNS else NEAR.changed(**changes))
         if name in TURNS:

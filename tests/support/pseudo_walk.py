@@ -218,7 +218,7 @@ STATES = [
     Stop("PhysicsStepScene", "a step", taken_apart),
     Stop("DigitsScene", "a digit", drawn),
     Stop("DigitsScene", "a digit and more", drawn, {"opened": "digits"}),
-    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 8)),
+    *(Stop("inside, sums", f"inside, {steps}", partial(inside, steps)) for steps in (1, 4, 5)),
     Stop("modern inside", "why not", lambda driver: driver.skip(120)),
     *(
         Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
