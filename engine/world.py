@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -72,20 +73,34 @@ class World:
         if gravity.shape not in ((2,), (self.batch, 2)):
             raise ValueError(f"gravity must be of shape (2,) or ({self.batch}, 2), not {gravity.shape}")
         gravity.flags.writeable = False
+        if self._remembered:
+            # Impulses that bore a stack under a stronger gravity would throw it up: they shrink to g·g' / g·g.
+            before, strength = self._gravity, dot(self._gravity, self._gravity)
+            share = np.where(strength > 0, dot(before, gravity) / np.maximum(strength, 1e-30), 1.0).clip(0.0, 1.0)
+            impulse = self._remembered.impulse * np.broadcast_to(share, self.batch)[self._remembered.world, None]
+            self._remembered = replace(self._remembered, impulse=impulse)
         self._gravity: Array = gravity
         if self.sleeping and self._prepared:
             self.wake()
 
     @property
     def params(self) -> BodyParams:
-        """Mass, drag and surface of the bodies; assign others to change them: all wake, and begin without impulses."""
+        """Mass, drag and surface of the bodies; assign others to change them: all wake, and begin without impulses.
+
+        Tables that hold what the present ones do change nothing.
+        """
         return self._params
 
     @params.setter
     def params(self, params: BodyParams) -> None:
         if len(params.group) != len(self.bodies) or params.quadratic_drag.shape[:-2] not in ((), (self.batch,)):
             raise ValueError(f"parameters must be those of {len(self.bodies)} bodies in {self.batch} worlds")
-        self._params, self._remembered = params, None
+        present = vars(self._params)
+        if not all(np.array_equal(table, present[name], equal_nan=True) for name, table in vars(params).items()):
+            self._remembered = None
+        elif self._prepared is self._params:
+            self._prepared = params
+        self._params = params
 
     def add(
         self,

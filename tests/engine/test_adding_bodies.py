@@ -33,6 +33,17 @@ def test_a_tower_stands_while_a_body_is_added_in_each_step(shape):
         assert np.array_equal(getattr(world.state, name)[:, :11], getattr(plain.state, name)), name
 
 
+@pytest.mark.parametrize("name", ["inverse_mass", "linear_drag", "quadratic_drag", "restitution", "friction", "group"])
+def test_a_table_set_to_what_it_is_changes_nothing(name):
+    world, plain = advance(tower(), 60), advance(tower(), 60)
+    for _ in range(30):
+        world.params = replace(world.params, **{name: getattr(world.params, name).copy()})
+        world.step()
+        plain.step()
+    assert np.array_equal(world.state.pose, plain.state.pose)
+    assert np.array_equal(world.asleep, plain.asleep)
+
+
 def test_the_same_pairs_may_meet_however_bodies_came_in():
     shapes = [[BOX, Circle(0.3)], Circle(0.5), Polygon.box(2, 1), [Circle(0.2), Circle(0.2, (1, 0)), BOX], BOX]
     at_once, one_by_one = World(), World()

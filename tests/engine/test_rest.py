@@ -107,6 +107,15 @@ def test_another_gravity_wakes_all():
     assert not world.asleep.any()
 
 
+def test_without_gravity_a_stack_stays_where_it_is():
+    for sleeping in (True, False):
+        world = advance(tower(height=5, batch=2, sleeping=sleeping), 300)
+        before = world.state.pose.copy()
+        world.gravity = np.array([[0.0, 0.0], [0.0, -9.81]])
+        advance(world, 120)
+        assert np.abs(world.state.pose - before).max() < 1e-3, sleeping
+
+
 def test_what_floats_creeps_or_rides_is_never_stopped():
     adrift = World(gravity=(0.0, 0.0))
     lonely = adrift.add(Circle(0.5), (0.0, 0.0))
