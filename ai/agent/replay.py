@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
@@ -205,14 +206,23 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 def make_replay(config: AgentConfig, num_features: int) -> ReplayBuffer:
     """Make the empty replay buffer of a configuration, for observations of so many features.
 
-    Raises ValueError for one that this machine has no memory for.
+    Raises ValueError for one that is larger than this machine's memory.
     """
-    sizes = config.replay_size, num_features, config.replay_prune
-    try:
-        if config.prioritised:
-            return PrioritisedReplayBuffer(*sizes, config.priority_exponent, config.importance_exponent)
-        return ReplayBuffer(*sizes)
-    except MemoryError as error:
+    size = config.replay_size * (8 * num_features + 16)
+    if size > _memory():  # a system may promise more than it has, and end the process when it is used
         raise ValueError(
-            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take too much memory"
-        ) from error
+            f"replay_size: {config.replay_size:,} memories of {num_features:,} numbers each take {size / 1e9:,.1f} GB, "
+            f"and this machine has {_memory() / 1e9:,.1f}"
+        )
+    sizes = config.replay_size, num_features, config.replay_prune
+    if config.prioritised:
+        return PrioritisedReplayBuffer(*sizes, config.priority_exponent, config.importance_exponent)
+    return ReplayBuffer(*sizes)
+
+
+def _memory() -> float:
+    """Return how many bytes of memory this machine has; endless where it does not say."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return float("inf")

@@ -114,6 +114,7 @@ def fitting(array: npt.NDArray[T], shape: tuple[int, ...], dtype: npt.DTypeLike)
 # A small file must not be able to ask for more than a machine has.
 MOST_VALUES: Final = 1 << 18  # of an example, before and after any layer
 MOST_LAYERS: Final = 500
+MOST_WORK: Final = 1_000_000_000  # multiplications for one example
 MOST_PARAMETERS: Final = 12_000_000  # of an agent: with gradients and an optimizer, that takes 430 MB to load
 
 
@@ -122,9 +123,14 @@ def check_next(before: Sequence[Layer], layer: Layer) -> None:
     given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
     if None not in (given, layer.inputs) and given != layer.inputs:
         raise ValueError(f"{type(layer).__name__} takes {_said(layer.inputs)}, the layer before gives {_said(given)}")
-    parameters = sum(math.prod(shape) for one in (*before, layer) for shape in one.shapes.values())
-    if len(before) >= MOST_LAYERS or parameters > MOST_PARAMETERS:
+    layers = *before, layer
+    parameters = [sum(map(math.prod, one.shapes.values())) for one in layers]
+    if len(layers) > MOST_LAYERS or sum(parameters) > MOST_PARAMETERS:
         raise ValueError(f"a network has at most {MOST_LAYERS} layers and {MOST_PARAMETERS:,} parameters")
+    # A convolution uses each of its parameters in every window.
+    windows = [math.prod(one.outputs[:2]) if isinstance(one.outputs, tuple) else 1 for one in layers]
+    if sum(count * places for count, places in zip(parameters, windows, strict=True)) > MOST_WORK:
+        raise ValueError(f"a network takes at most {MOST_WORK:,} multiplications for an example")
 
 
 def _said(shape: int | ImageShape | None) -> str:

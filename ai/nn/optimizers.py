@@ -37,6 +37,7 @@ class Optimizer(ABC):
     """
 
     remembers: tuple[str, ...] = ()  # names of what it remembers of each parameter from step to step
+    never_negative: tuple[str, ...] = ()  # which of these no step can bring below 0
 
     def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
         if isinstance(learning_rate, bool) or not isinstance(learning_rate, int | float | np.number):
@@ -100,6 +101,9 @@ class Optimizer(ABC):
             raise ValueError(f"not a state of {type(self).__name__}: it holds {', '.join(sorted(state))}")
         steps = count_of(state["steps"].tolist())
         memory = {name: array_like(values, state[name], name) for name in names}
+        for name in memory.keys() & set(self.never_negative):
+            if (memory[name] < 0).any():
+                raise ValueError(f"{name} holds numbers below 0, and is a sum of squares")
         self.steps, self.memory, self.scratch, self._moved = steps, memory, np.empty(0), None
 
     @abstractmethod
@@ -151,6 +155,7 @@ class Adam(Optimizer):
     """
 
     remembers = ("gradient_sum", "square_sum")
+    never_negative = ("square_sum",)
 
     def __init__(
         self,

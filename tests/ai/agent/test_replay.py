@@ -3,8 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ai.agent.config import AgentConfig
 from ai.agent.n_step import Episodes, NStep
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition, make_replay
 
 
 def cells(first, count):
@@ -12,6 +13,11 @@ def cells(first, count):
     numbers = np.arange(first, first + count)
     states = np.repeat(numbers[:, None], 2, axis=1).astype(np.float32)
     return Transition(states, states + 1, numbers % 3, numbers.astype(np.float32), numbers % 2 == 0, numbers % 5 + 1)
+
+
+def test_a_memory_larger_than_the_machines_is_refused_by_the_name_of_its_setting():
+    with pytest.raises(ValueError, match=r"replay_size: .* this machine has"):
+        make_replay(AgentConfig(replay_size=10**6), 10**6)
 
 
 def kept(buffer):

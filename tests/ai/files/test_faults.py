@@ -37,6 +37,7 @@ from ai.files import (
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
+    ConvolutionLayer,
     CostFunctions,
     ModelFormatError,
     NeuralNetwork,
@@ -266,6 +267,9 @@ def test_a_network_too_large_to_be_read_is_not_made_either():
         network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
     with pytest.raises(ValueError, match="at most 500 layers"):
         network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+    network = NeuralNetwork(*CostFunctions.use_mse())
+    with pytest.raises(ValueError, match="multiplications"):
+        network.add_layer(*(ConvolutionLayer((side, side, 226), 226, 3) for side in (34, 32, 30)))
     with little_memory(), pytest.raises(ValueError, match="parameters"):
         DeepQAgent(config=PRESETS["modern"].changed(hidden=(1024,) * 400))
 

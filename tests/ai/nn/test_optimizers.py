@@ -69,6 +69,7 @@ def test_a_damaged_state_or_one_of_another_kind_is_refused_and_changes_nothing(s
     for change, message in [
         ({"square_sum": np.ones(4, np.float32)}, r"square_sum should hold float32 \[3\]"),
         ({"gradient_sum": np.array([0, np.nan, 0], np.float32)}, "gradient_sum holds numbers that are not finite"),
+        ({"square_sum": np.array([1, -1, 1], np.float32)}, "square_sum holds numbers below 0"),
         ({"steps": np.array(-1)}, "whole number"),
         ({"steps": np.array(2.5)}, "whole number"),
         ({"velocity": np.ones(3)}, "not a state of Adam: it holds gradient_sum, square_sum, steps, velocity"),
