@@ -13,7 +13,7 @@ import numpy as np
 import pygame
 
 from game.core import texts
-from game.drawing.canvas import Align, Canvas, Point
+from game.drawing.canvas import Canvas, Point
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
 from game.ui import plotting
@@ -163,10 +163,10 @@ class Chart:
             if number in (0, len(self._lines) - 1):
                 words = plotting.round_number(value)
                 sheet.text(words, (plot.right + 6, y + 4), size=LABEL, colour=_AXES)
-        ends: tuple[tuple[float, float, Align], ...] = ((0.0, plot.x, "left"), (self.end, plot.right, "right"))
-        for seconds, x, align in ends:
-            words, place = texts.CHART_SECONDS.format(seconds), (x, plot.bottom + 15)
-            sheet.text(words, place, size=LABEL, colour=_AXES, tabular=True, align=align)
+        below = plot.bottom + 15
+        sheet.text("0", (plot.x, below), size=LABEL, colour=_AXES)
+        words = texts.CHART_SECONDS.format(self.end)
+        sheet.text(words, (plot.right, below), size=LABEL, colour=_AXES, tabular=True, align="right")
 
     def _draw_marker(self, canvas: Canvas, x: float) -> None:
         plot = self.plot

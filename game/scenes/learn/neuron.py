@@ -216,8 +216,8 @@ class NeuronChapter(Chapter):
                 product=decimal(product, 2, "+"),
             )
             end = box.left + 0.6 * box.width
-            canvas.text(name, (box.left + 4, y), size=SMALL, colour=MUTE, room=0.22 * box.width)
-            canvas.text(words, (end, y), size=SMALL, align="right", tabular=True)
+            taken = canvas.text(words, (end, y), size=SMALL, align="right", tabular=True)
+            canvas.text(name, (box.left + 4, y), size=SMALL, colour=MUTE, room=taken.left - box.left - 16)
             canvas.line((end + 12, y - 4), neuron, NET, 1 + min(abs(product), 3.0), 0.6)
         canvas.glow(neuron, 40, NET, abs(self.model.output))
         canvas.dot(neuron, 16, NET, 0.25 + 0.75 * abs(self.model.output))
