@@ -5,6 +5,7 @@ what belongs into one of that kind.
 """
 
 import errno
+import glob
 import os
 import re
 import shutil
@@ -21,7 +22,7 @@ from ai.files.writing import beside, synchronise, take
 
 CONFIG = "config.json"  # what every model's folder holds
 _NEW, _OLD = ".new", ".old"  # ends of the names of folders that are not finished, or were moved aside for a new one
-_ASIDE: Final = re.compile(r"\.(.+)\.[0-9a-f]{8}\.(?:new|old)")  # such a name
+_ASIDE: Final = re.compile(r"\.(.+)\.[0-9a-f]{8}\.(?:new|old)")  # such a name, as `beside` makes it
 _STALE: Final = 3600.0  # seconds after which one that is not finished counts as abandoned
 _DESKTOP: Final = ("*.DS_Store", "*Thumbs.db", "*desktop.ini")  # what systems leave wherever a folder was looked at
 
@@ -149,10 +150,8 @@ def _clear_away(path: Path) -> None:
 
 def _aside(path: Path, suffix: str) -> list[Path]:
     """Return the folders beside a path that were begun, or moved aside, for it."""
-    with suppress(OSError):
-        found = [(each, _ASIDE.fullmatch(each.name)) for each in path.parent.iterdir() if each.suffix == suffix]
-        return [each for each, name in found if name and name[1] == path.name and not each.is_symlink()]
-    return []
+    found = path.parent.glob(f".{glob.escape(path.name)}.{8 * '[0-9a-f]'}{suffix}")
+    return [each for each in found if not each.is_symlink()]
 
 
 def _checked(target: str | Path, kind: FolderKind) -> Path:

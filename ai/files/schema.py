@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, fields
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -19,7 +19,14 @@ from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin, 
 from ai.files.reading import MOST, brief, number_of, parse_json, read_end, shown
 
 T = TypeVar("T")
-Check = Callable[[Any], Any]  # returns a value as its field holds it, or raises ValueError
+# What a value is not, of which the type is not exactly one of these.
+_PLAIN: Final = {
+    NoneType: "something",
+    bool: "neither true nor false",
+    int: "no whole number",
+    str: "no text",
+    dict: "no table of values by name",
+}
 
 
 class OtherVersionError(ValueError):
@@ -75,7 +82,7 @@ Duration = Annotated[float, Within(0, MOST)]  # in seconds
 
 def read_as(kind: type[T], values: Any) -> T:
     """Return a dataclass from what a JSON file has given; raises ValueError, which names the first fault."""
-    right, problems = sound_fields(kind, _named(values))
+    right, problems = sound_fields(kind, _as(dict, values))
     if problems:
         raise ValueError(problems[0])
     return kind(**right)
@@ -99,10 +106,10 @@ def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any],
     """Return those fields of a dataclass that a file has given and that are right, and what is wrong with the rest."""
     right: dict[str, Any] = {}
     problems: list[str] = []
-    for name, (check, needed) in _fields_of(kind).items():
+    for name, (hint, needed) in _fields_of(kind).items():
         if name in values:
             try:
-                right[name] = _at(name, check, values[name])
+                right[name] = _at(name, hint, values[name])
             except ValueError as error:
                 problems.append(str(error))
         elif needed:
@@ -110,9 +117,9 @@ def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any],
     return right, problems
 
 
-def check_field(kind: type, name: str, value: Any) -> Any:
-    """Return a value as a field of a dataclass holds it; raises ValueError for one of another type."""
-    return _at(name, _fields_of(kind)[name][0], value)
+def check_field(kind: type, name: str, value: Any) -> None:
+    """Raise ValueError for a value of another type than a field of a dataclass has."""
+    _at(name, _fields_of(kind)[name][0], value)
 
 
 def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
@@ -128,94 +135,70 @@ def check_header(values: Any, form: str, version: int) -> dict[str, Any]:
     return values
 
 
-def _at(place: object, check: Check, value: Any) -> Any:
-    """Check the value of a place; raises ValueError, which begins with the place."""
-    try:
-        return check(value)
-    except ValueError as error:
-        raise ValueError(f"{brief(place, 40)}: {error}") from None
-
-
 @cache
-def _fields_of(kind: type) -> dict[str, tuple[Check, bool]]:
-    """Return the check of each field of a dataclass, and whether a file must have the field."""
+def _fields_of(kind: type) -> dict[str, tuple[Any, bool]]:
+    """Return the type of each field of a dataclass, with its rules, and whether a file must have the field."""
     hints = get_type_hints(kind, include_extras=True)
     return {
-        each.name: (_check_of(hints[each.name]), each.default is MISSING and each.default_factory is MISSING)
+        each.name: (hints[each.name], each.default is MISSING and each.default_factory is MISSING)
         for each in fields(kind)
     }
 
 
-def _check_of(hint: Any) -> Check:
-    """Return the check for a type."""
+def _at(place: object, hint: Any, value: Any) -> Any:
+    """Return the value of a place as `_as` does; raises ValueError, which begins with the place."""
+    try:
+        return _as(hint, value)
+    except ValueError as error:
+        raise ValueError(f"{brief(place, 40)}: {error}") from None
+
+
+def _as(hint: Any, value: Any) -> Any:
+    """Return a value as a field of this type holds it; raises ValueError for one of another type, or against a rule."""
+    if isinstance(hint, type):
+        return _as_plain(hint, value)
     origin, inner = get_origin(hint), get_args(hint)
     if origin is Annotated:
-        return partial(_ruled, _check_of(inner[0]), inner[1:])
+        value = _as(inner[0], value)
+        for rule in inner[1:]:
+            rule(value)
+        return value
     if origin in (Union, UnionType):
-        return partial(_any_of, [_check_of(kind) for kind in inner])
+        return _as_any([kind for kind in inner if value is None or kind is not NoneType], value)
     if origin is tuple:
-        return partial(_tuple, [_check_of(kind) for kind in inner if kind is not Ellipsis], Ellipsis in inner)
+        return _as_tuple(inner, value)
     if origin is dict:
-        return partial(_table, _check_of(inner[1]))
-    return _PLAIN[hint] if hint in _PLAIN else partial(_made, hint)
+        return {name: _at(name, inner[1], each) for name, each in _as(dict, value).items()}
+    raise TypeError(f"no field of a file can be {hint}")
 
 
-def _made(kind: type, value: Any) -> Any:
-    """Check for a dataclass, which may have been made already."""
-    return read_as(kind, vars(value) if isinstance(value, kind) else value)
-
-
-def _ruled(check: Check, rules: tuple[Check, ...], value: Any) -> Any:
-    value = check(value)
-    for rule in rules:
-        rule(value)
+def _as_plain(kind: Any, value: Any) -> Any:
+    """Return a value as one of a class: a plain one, or a dataclass, which may be made already."""
+    if kind is float:
+        return float(number_of(value))
+    if kind is Any:
+        return value
+    if kind not in _PLAIN:
+        return read_as(kind, vars(value) if isinstance(value, kind) else value)
+    if type(value) is not kind:
+        raise ValueError(f"{shown(value)} is {_PLAIN[kind]}")
     return value
 
 
-def _any_of(checks: list[Check], value: Any) -> Any:
-    """Check for a union: the value has to pass one of these."""
-    if value is None and _none in checks:
-        return None
-    *others, last = (check for check in checks if check is not _none)
-    for check in others:
+def _as_any(kinds: list[Any], value: Any) -> Any:
+    """Return a value as one of these types has it, or raise what is wrong with it for the last."""
+    for kind in kinds[:-1]:
         with suppress(ValueError):
-            return check(value)
-    return last(value)
+            return _as(kind, value)
+    return _as(kinds[-1], value)
 
 
-def _tuple(checks: list[Check], repeated: bool, value: Any) -> tuple[Any, ...]:
-    """Check for a tuple of one value for each of these checks, or of any length with one check for all."""
+def _as_tuple(kinds: tuple[Any, ...], value: Any) -> tuple[Any, ...]:
+    """Return a list as a tuple of one value for each of these types, or of any length with `...` for the second."""
     if not isinstance(value, list | tuple):
         raise ValueError(f"{shown(value)} is no list")
-    if repeated:
-        checks = checks * len(value)
-    if len(value) != len(checks):
-        raise ValueError(f"{shown(value)} is no list of {len(checks)}")
-    return tuple([_at(place, *each) for place, each in enumerate(zip(checks, value, strict=True))])
-
-
-def _table(check: Check, value: Any) -> dict[str, Any]:
-    """Check for a table, of which every value has to pass one check."""
-    return {name: _at(name, check, each) for name, each in _named(value).items()}
-
-
-def _of(kind: type, words: str) -> Check:
-    """Return the check for values of exactly one type."""
-
-    def check(value: Any) -> Any:
-        if type(value) is not kind:
-            raise ValueError(f"{shown(value)} is {words}")
-        return value
-
-    return check
-
-
-_none, _named = _of(NoneType, "something"), _of(dict, "no table of values by name")
-_PLAIN: Final[dict[Any, Check]] = {
-    Any: lambda value: value,
-    NoneType: _none,
-    bool: _of(bool, "neither true nor false"),
-    int: _of(int, "no whole number"),
-    float: lambda value: float(number_of(value)),
-    str: _of(str, "no text"),
-}
+    if kinds[-1] is Ellipsis:
+        kinds = kinds[:1] * len(value)
+    if len(value) != len(kinds):
+        raise ValueError(f"{shown(value)} is no list of {len(kinds)}")
+    return tuple([_at(place, *each) for place, each in enumerate(zip(kinds, value, strict=True))])
