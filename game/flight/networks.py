@@ -55,7 +55,10 @@ def decision_steps(policy: Policy | None) -> int:
 
 @dataclass(frozen=True)
 class Network:
-    """Network by name. `policy` is None if it could not be read, and `problem` then says why."""
+    """Network by name. `policy` is None if it could not be read, and `problem` then says why.
+
+    Of one that flies, `problem` is a sentence on the one whose place it takes.
+    """
 
     name: str
     policy: Policy | None = None
@@ -149,7 +152,8 @@ def _fresh(name: str, folder: Path, features: int) -> Network:
 def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = False) -> Network:
     """Read the network of that name, or the shipped default if the name is empty or gone.
 
-    Where it is not as on the moon (`elsewhere`), the one that lands anywhere takes the place of a shipped one.
+    Where it is not as on the moon (`elsewhere`), the one that lands anywhere takes the place of a shipped one, or
+    `problem` says why it cannot.
     """
     known, shipped = folders(models_dir, user_dir), models_dir / LANDER
     wanted = name if name in known else DEFAULT
@@ -157,7 +161,10 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = F
     if not elsewhere or known.get(wanted, shipped / DEFAULT).parent != shipped:
         return network
     anywhere = load(ANYWHERE, shipped / ANYWHERE, NUM_FEATURES + len(SURROUNDINGS))
-    return anywhere if anywhere.policy else network
+    if anywhere.policy:
+        return anywhere
+    said = texts.WATCH_PROBLEM.format(name=texts.NETWORK_EVERYWHERE, problem=anywhere.problem)
+    return replace(network, problem=network.problem or said[:1].upper() + said[1:])
 
 
 class Policies:

@@ -306,8 +306,8 @@ class PlayScene(Scene):
         settings = context.settings
         shipped, mine = context.models_dir, context.user_dir
         self.network = own.flying(context) or networks.chosen(shipped, mine, settings.model, self._loaded_for)
-        if self.network.problem:
-            context.note(texts.NO_NETWORK.format(problem=self.network.problem))
+        if problem := self.network.problem:
+            context.note(problem if self.network.policy else texts.NO_NETWORK.format(problem=problem))
 
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's own."""

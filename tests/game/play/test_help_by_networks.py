@@ -165,13 +165,16 @@ def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open,
 
 
 @pytest.mark.parametrize("damage", ["missing", "another"])
-def test_where_it_cannot_be_read_the_usual_network_flies(open_game: Open, context: Context, copied: Path, damage: str):
+def test_where_it_cannot_be_read_the_usual_network_flies_and_the_player_is_told(
+    open_game: Open, context: Context, copied: Path, damage: str
+):
     folder = copied / networks.ANYWHERE
     shutil.rmtree(folder)
     if damage == "another":
         shutil.copytree(copied / "modern", folder)
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["earth"]))
     driver.frames(1)
+    assert driver.said.startswith("The network for every world cannot fly: ")
     assert play(driver).network.name == "modern"
     assert isinstance(play(driver).network.policy, DeepQAgent)
     driver.key(pygame.K_TAB)
