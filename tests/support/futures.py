@@ -13,7 +13,7 @@ class AtOnce:
 
     def ask(self, moment, before, asked, decisions, policy, route):
         self._lookahead = Lookahead(policy, route)
-        self._moment, self._before, self._decisions, self._wished = moment, before, decisions, {asked}
+        self._moment, self._before, self.decisions, self._wished = moment, before, decisions, {asked}
 
     def hint(self, asked):
         self._wished.add(asked)
@@ -22,5 +22,5 @@ class AtOnce:
         if self.late is None:
             return {}
         pushes = [push for push in {*self._wished, KEYS[0]} if push not in self.late]
-        found = self._lookahead.futures(self._moment, [(0, push) for push in pushes], self._decisions, self._before)
+        found = self._lookahead.futures(self._moment, [(0, push) for push in pushes], self.decisions, self._before)
         return dict(zip(pushes, found, strict=True))

@@ -44,6 +44,17 @@ def fly(env, plan):
     return env.outcome[0] == Outcome.LANDED
 
 
+def test_looked_at_one_by_one_pushes_come_to_what_they_do_in_a_batch(agent):
+    moment, ahead, kinds = Moment.of(low()), Lookahead(agent), set()
+    for decisions in (1, 4, 12):
+        for push, future in zip(KEYS, ahead.futures(moment, [(0, key) for key in KEYS], decisions), strict=True):
+            *sooner, last = filter(None, ahead.look(moment, push, decisions))
+            assert (last.plan is None, last.passes) == (future.plan is None, future.passes), (push, decisions)
+            assert all(each.passes for each in sooner)
+            kinds.add((last.plan is None, last.passes))
+    assert (False, False) in kinds, "what lands, but does not last"
+
+
 def test_a_plan_flies_again_bit_for_bit_wherever_it_was_made(agent):
     anywhere = DeepQAgent.load(MODELS_DIR / "lander" / "anywhere")
     missions = {name: (anywhere, MISSIONS[name].begin()) for name in ("wind", "ferry")}

@@ -197,7 +197,10 @@ def test_a_plan_is_void_under_other_rules(agent):
     def change_wind(env):
         env.conditions = Conditions(wind=0.05)
 
-    for change in (change_gravity, change_wind):
+    def change_ground(env):
+        env.ground = replace(env.ground)
+
+    for change in (change_gravity, change_wind, change_ground):
         env, copilot = flights(1), CoPilot(agent, GUARD, Mode.GUARDIAN)
         copilot.decide(env.observe(), [3], env=env)
         before = copilot.guardians[0].plan

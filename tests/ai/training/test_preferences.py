@@ -151,6 +151,7 @@ def test_the_question_comes_back_with_the_answer_that_is_taken_back():
     upbringing.take_back()
     assert upbringing.question is question
     assert not len(upbringing.taste.answers)
+    np.testing.assert_array_equal(upbringing.agent.paying.points, upbringing.taste.pay)
 
 
 def test_the_same_seed_and_answers_give_the_same_network():
@@ -207,10 +208,22 @@ def test_answers_given_in_a_row_are_each_learned_from():
 
 def test_each_start_is_asked_about_once():
     upbringing, starts = asked(), set()
-    for _ in range(4):
+    for _ in range(bringing_up.POOL):
         starts.add(upbringing.question[0].poses[0].tobytes())
         upbringing.answer(FIRST)
-    assert len(starts) == 4
+    assert len(starts) == bringing_up.POOL
+    assert upbringing.question is None, "others are flown first"
+
+
+def test_a_landing_is_remembered_to_its_last_decision():
+    upbringing, decisions = Upbringing(SMALL), 0
+    env = upbringing.env
+    env.place(np.ones(32, bool), np.tile([0.0, env.params.pad_top + env.params.stand, 0, 0, 0, 0], (32, 1)))
+    while not upbringing._landings:
+        env.step(np.zeros(32, np.intp))
+        upbringing._watch()
+        decisions += 1
+    assert all(len(actions) == decisions for _, actions in upbringing._landings)
 
 
 def test_where_one_has_landed_one_does_what_it_did_and_the_others_do_not():

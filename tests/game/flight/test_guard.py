@@ -6,6 +6,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot.futures import Future, Lookahead
+from ai.copilot.guardian import decisions_of
 from ai.flights.verification import fly_again
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
@@ -72,6 +73,10 @@ def test_what_is_decided_lasts_for_four_steps_and_a_tap_counts_at_the_next(agent
         taps.follow(Push.of(main, side))
     assert taps.asked == KEYS[4]  # main was tapped, left is held
     taps.forget()
+    for key in (3, 4, 3):
+        taps.follow(KEYS[key])
+    assert taps.asked == KEYS[4]  # left was tapped while main is held
+    taps.forget()
     taps.follow(KEYS[1])
     assert taps.asked == KEYS[1]
 
@@ -116,6 +121,9 @@ def test_a_craft_hangs_until_a_plan_is_found_but_not_for_long(agent):
     flight = guarded(agent)
     guard = flight.chooser.guard
     guard.ahead.late = None
+    flight.chooser.help(1.0)
+    guard.hang(flight, Push())
+    assert guard.ahead.decisions == decisions_of(1.0)  # with another dial, other futures are asked for
     hung = 0
     while not guard.ready(flight):
         guard.hang(flight, KEYS[2])

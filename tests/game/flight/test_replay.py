@@ -127,7 +127,10 @@ def test_it_plays_stops_steps_winds_slows_and_begins_anew(replay: Driver):
     before = at()
     replay.frames(20)
     assert at() == before + 20
+    replay.app.context.unfold("replay")
+    replay.frames(1)
     replay.keys(pygame.K_MINUS, pygame.K_MINUS)
+    assert replay.choice("×¼").index == 0
     before = at()
     replay.frames(40)
     assert at() == pytest.approx(before + 10, abs=1)

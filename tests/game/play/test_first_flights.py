@@ -228,14 +228,14 @@ def test_a_guard_is_called_by_the_player_and_a_landing_with_it_ends_the_first_fl
 
 
 def test_goals_grow_with_ones_own_landings_and_the_best_of_day_and_week_is_told():
-    landing = Entry(1e9, "LANDED", 20.0, 8.0, 1.0, 1.0, alone=True, score=85)
+    landing = Entry(1e9, "LANDED", 20.0, 8.0, 1.0, 1.0, alone=True, score=80)
     goals = Goals([landing, *(replace(landing, score=99, **other) for other in OTHERS)])
     assert goals.next == texts.GOALS["fuel"].format(value=4.5)
     assert not goals.add(replace(landing, outcome="CRASHED", fuel=1.0))
-    assert goals.add(replace(landing, fuel=4.0, score=70))
+    assert goals.add(replace(landing, fuel=4.5, score=70))
     assert goals.next == texts.GOALS["seconds"].format(value=12)
-    assert goals.bests(1e9) == {name: texts.SCORE.format(count=85) for name in (texts.CARD_TODAY, texts.CARD_WEEK)}
-    assert goals.bests(1e9 + 30 * 86400) == {}
+    assert goals.bests(1e9) == {name: texts.SCORE.format(count=80) for name in (texts.CARD_TODAY, texts.CARD_WEEK)}
+    assert goals.bests(1e9 + 364 * 86400) == {}
     assert not Goals([replace(landing, score=99, fuel=1.0, seconds=5.0)]).next
 
 

@@ -15,9 +15,9 @@ from game.flight import flight_file
 from game.flight.choosers import Recorded
 from game.flight.foresight import surface_height
 from game.flight.logbook import Records
-from game.flight.outcomes import OutcomeCard, flight_figures
+from game.flight.outcomes import OutcomeCard, flight_figures, qualities
 from game.scenes.logbook.scene import LogbookScene
-from game.scenes.play.challenge import FlownMission
+from game.scenes.play.challenge import FlownMission, Wanted
 from game.scenes.play.missions import MissionsScene
 from game.scenes.play.wind import wind
 from game.scenes.play.words import surroundings
@@ -149,6 +149,7 @@ def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
     env.steps[:] = 60 * 4
     env.outcome[:] = Outcome.LANDED
     assert landing_score(env) == 100
+    assert "centred" in qualities(env)
     assert flight_readouts(env)["drift"].figure == "0.0"
 
 
@@ -182,6 +183,13 @@ def test_beside_the_player_flies_the_network_or_a_landing_that_was_recorded(open
         driver.key(pygame.K_RETURN)
         assert isinstance(play(driver).flown.ghost.flight.chooser, Recorded) is not lands
         driver.app.scenes.apply(Pop())
+
+
+def test_a_landing_of_ones_own_is_the_ghost_of_the_next_try_and_a_networks_is_not():
+    for by_hand in (1, 0):
+        challenge = FlownMission(MISSIONS["brake"])
+        concluded(challenge, scripted(mission="brake", by_hand=by_hand))
+        assert bool(challenge.start(Wanted(0)).ghost) == by_hand
 
 
 # Flights of one's own

@@ -9,6 +9,7 @@ import pytest
 
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.push import KEYS
 from game.core import texts
 from game.core.scene import Push
 from game.flight.logbook import Records
@@ -23,7 +24,7 @@ from game.ui.context import Context
 from tests.game.play.ends import ON_PAD, TOO_FAST, end, place
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver
-from tests.support.flights import play
+from tests.support.flights import begun, play
 from tests.support.listener import Listener
 from tests.support.player import Player
 
@@ -257,6 +258,15 @@ def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes
 def saved(driver: Driver) -> tuple[bool, bool]:
     values = driver.saved()
     return values["tutored"], values["first_flown"]
+
+
+def test_what_a_lesson_asks_for_counts_in_a_row_only():
+    lessons, flight, heard = Tutorial(), begun(0, PILOT), list[str]()
+    lessons.start(Wanted(0, PILOT)).place(flight)
+    for action in [3] * 23 + [0] + [3] * 24:  # of 24 steps
+        flight.step(KEYS[action])
+        heard.append(lessons.follow(flight))
+    assert heard == [""] * 47 + ["choose"]
 
 
 def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: Context):

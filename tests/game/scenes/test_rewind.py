@@ -2,16 +2,20 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pygame
 import pytest
 
-from ai.training.history import Checkpoint
+from ai.training.history import Checkpoint, History
+from ai.training.messages import SwarmState
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.landers import INSIDE
+from game.scenes.train.rewind import Rewind
 from game.scenes.train.scene import TrainScene
+from game.training.record import Record
 from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -152,6 +156,20 @@ def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     assert began is not None
     scene.view.rewind.go_to(began + 100)
     assert scene.view.rewind.swarm_state
+
+
+def test_the_first_landers_kept_and_the_point_at_their_moment_are_one_stop() -> None:
+    swarms, networks, known = Record(1 << 20), Record(1 << 20), History()
+    for decisions in (300.0, 600.0, 800.0):
+        known.append(point(seconds=decisions / 100, decisions=decisions))
+    for number in (600, 700, 800):
+        nothing = np.zeros((1, 2))
+        swarms.append(SwarmState(nothing, nothing[:, 0], nothing[:, 0], nothing[:, 0], number))
+    rewind, stops = Rewind(SimpleNamespace(history=known, swarms=swarms, networks=networks)), []
+    for direction in (-1, -1, -1, 1, 1, 1):
+        rewind.shift(direction)
+        stops.append(rewind.moment)
+    assert stops == [700, 600, 300, 600, 700, None]
 
 
 def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Driver]) -> None:

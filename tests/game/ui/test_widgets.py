@@ -112,8 +112,14 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
     scene.form.focus(scene.slider)
     game.post(pygame.KEYDOWN, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
     game.frames(60)
-    game.post(pygame.KEYUP, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
     assert scene.slider.value == 1.0
+    game.post(pygame.KEYDOWN, key=pygame.K_LEFT, mod=0, unicode="", scancode=0)
+    game.post(pygame.KEYUP, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
+    game.frames(20)  # who turns round waits once more
+    assert scene.slider.value == pytest.approx(0.9)
+    game.frames(40)
+    assert scene.slider.value == 0.0
+    game.post(pygame.KEYUP, key=pygame.K_LEFT, mod=0, unicode="", scancode=0)
 
 
 def test_a_ring_shows_for_keys_and_not_for_the_mouse(page: tuple[Driver, Page]):
