@@ -10,6 +10,7 @@ from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
+from tests.support.landers import put
 from tests.support.listener import Listener
 
 DOWN, UP, LEFT, RIGHT, ENTER = pygame.K_DOWN, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RETURN
@@ -83,6 +84,7 @@ def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, ope
     monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))
     game: Driver = open_game(PlayScene, seed=4)
     game.post(pygame.WINDOWMINIMIZED)  # nothing need be drawn
+    put(game.top.flight.env, (0, 6, 0, -2, 0, 0))
     game.key(pygame.K_TAB)
     for _ in range(1500):
         game.frames(1)

@@ -80,7 +80,7 @@ def dropped(start: tuple[float, ...]) -> tuple[Flight, dict[str, Readout]]:
 
 def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
     rng, seen = np.random.default_rng(0), 0
-    for _ in range(60):
+    for _ in range(40):
         pad = begun(1).env.ground.pads[0]
         aside = rng.choice([-1, 1]) * (pad.width / 2 + rng.uniform(-0.5, 2.0))
         flight, readouts = dropped((
@@ -99,7 +99,7 @@ def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
             if cause is not Cause.TILTED:
                 figure = float(outcome_card(flight.env).reason.split("at ")[-1].split()[0])
                 assert float(named.figure) == pytest.approx(figure, abs=0.051)
-    assert seen > 30
+    assert seen > 20
 
 
 def test_a_landing_and_a_soft_touch_mark_nothing():

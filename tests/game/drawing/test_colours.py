@@ -129,10 +129,10 @@ def test_a_large_rectangle_has_the_corners_of_a_small_one_and_nothing_else():
 
 @pytest.mark.parametrize("fraction", [0.001, 0.31, 1.0])
 def test_a_bar_is_a_pill_of_its_length(fraction: float):
-    bar, pill = (Canvas(pygame.Surface((1920, 1080))) for _ in range(2))
+    bar, pill = (Canvas(pygame.Surface((960, 540))) for _ in range(2))
     bar.bar((100, 50, 120, 4), fraction, GOLD)
     pill.pill((100, 50, 120, 4), (58, 68, 92), 0.6)
-    bare = Canvas(pygame.Surface((1920, 1080)))
+    bare = Canvas(pygame.Surface((960, 540)))
     bare.bar((100, 50, 120, 4), 0.0, GOLD)
     pill.surface.blit(bare.surface, (0, 0))
     pill.pill((100, 50, max(120 * fraction, 4), 4), GOLD)

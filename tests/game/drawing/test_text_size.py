@@ -8,9 +8,7 @@ import pytest
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, least
-from game.drawing.tokens import LABEL, SMALL, TEXT_SIZES, VIEW_SIZE
-from game.scenes.menus.settings import SettingsScene
-from game.ui.context import Context
+from game.drawing.tokens import LABEL, TEXT_SIZES, VIEW_SIZE
 
 
 def test_text_has_one_size_on_the_world_and_before_it_and_is_never_less_than_asked():
@@ -29,17 +27,6 @@ def test_names_that_no_font_can_write_are_written_all_the_same():
     assert canvas.text("a\udcff\0", (0, 100)).width == canvas.text("a??", (0, 100)).width
     for letter in "\n\r\t\x07\x1b\x85\u2028\u202e\u2066":  # nor do they begin a line, or turn the order around
         assert canvas.text(f"a{letter}b", (0, 100)) == canvas.text("a?b", (0, 100)), ascii(letter)
-
-
-def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
-    driver = open_game(SettingsScene)
-    while driver.top.form.focused.label != texts.TEXT_SIZE:
-        driver.key(pygame.K_DOWN)
-    before = driver.app.canvas.text_width("Text", size=SMALL)
-    driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)
-    assert driver.app.canvas.text_width("Text", size=SMALL) > 1.2 * before
-    driver.app.settings_writer.wait()
-    assert context.settings_file.load().text_size == "largest"
 
 
 # Numbers and days as the language writes them, wherever they are drawn.

@@ -20,12 +20,12 @@ from game.scenes.logbook import replay as module
 from game.scenes.logbook.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, landed
+from tests.support.flights import begun, fly_out, kept
 
 
 @pytest.fixture
 def record(context: Context) -> Record:
-    return kept(context, landed())
+    return kept(context, fly_out(begun(5)))
 
 
 @pytest.fixture

@@ -250,22 +250,6 @@ def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
         assert networks.decision_steps(pilot) == DECISION_STEPS
 
 
-def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_over():
-    pace = TimeScale()
-    pace.slow_down()
-    steps = updates = 0
-    while pace.slow:
-        steps += pace.steps()
-        updates += 1
-    assert 45 <= updates <= 75
-    assert 0.3 < steps / updates < 0.65
-    pace.slow_down()
-    pace.steps()
-    pace.hurry()
-    assert not pace.slow
-    assert all(pace.steps() == 1 for _ in range(50))
-
-
 def test_a_picture_never_runs_backward():
     """The moment that is drawn, in steps, grows from picture to picture."""
     pace = TimeScale()

@@ -58,22 +58,6 @@ def pads(game: Driver) -> Iterator[VirtualPads]:
     pads.pull_out_all()
 
 
-def test_a_pad_is_plugged_in_flown_with_and_pulled_out(game: Driver, pads: VirtualPads):
-    controls = game.app.context.controls
-    for _ in range(2):
-        pads.plug_in()
-        game.frames(2)
-        gc.collect()  # a pad that nobody holds on to would fall silent here
-        pads.press(pygame.CONTROLLER_BUTTON_A)
-        pads.push(pygame.CONTROLLER_AXIS_LEFTX, -30000)
-        game.frames(2)
-        assert (controls.main, controls.steer) == (True, 1)
-        assert controls.gamepad_in_use
-        pads.pull_out_all()
-        assert game.frames(2)
-        assert (controls.main, controls.steer) == (False, 0)
-
-
 def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
     open_game: Callable[..., Driver], game: Driver, pads: VirtualPads
 ):
@@ -82,6 +66,7 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
     play = game.top
     pads.plug_in()
     game.frames(3)
+    gc.collect()  # a pad that nobody holds on to would fall silent here
     pads.press(pygame.CONTROLLER_BUTTON_A)
     pads.push(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
     game.frames(10)

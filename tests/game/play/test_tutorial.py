@@ -262,7 +262,9 @@ def saved(driver: Driver) -> tuple[bool, bool]:
 
 def test_what_a_lesson_asks_for_counts_in_a_row_only():
     lessons, flight, heard = Tutorial(), begun(0, PILOT), list[str]()
-    lessons.start(Wanted(0, PILOT)).place(flight)
+    place_craft = lessons.start(Wanted(0, PILOT)).place
+    assert place_craft is not None
+    place_craft(flight)
     for action in [3] * 23 + [0] + [3] * 24:  # of 24 steps
         flight.step(KEYS[action])
         heard.append(lessons.follow(flight))

@@ -56,33 +56,6 @@ def bring(player: Player, place: tuple[float, float]) -> None:
         player.hold(name, down=False)
 
 
-def test_a_body_is_gripped_lifted_and_let_go(take: Take):
-    player = take(PhysicsScene, "stack")
-    scene = player.top
-    disc = scene.exhibit.ball
-
-    def seen() -> tuple[float, float]:
-        x, y = scene.view(1.0).points(disc.position[0]).tolist()
-        return x, y
-
-    bring(player, seen())
-    assert scene._lit() == disc.index
-    before = seen()
-    player.hold("confirm", down=True)
-    assert scene.grip is not None
-    assert scene.grip.body is disc
-    bring(player, (before[0], before[1] - 100))
-    player.frames(60)
-    assert seen()[1] < before[1] - 80
-    player.press("back")  # which lets go as well
-    assert scene.grip is None
-    player.hold("confirm", down=False)
-    assert not player.form.typing
-    assert scene._lit() is None
-    player.press("pause")
-    assert "PauseScene" in player.top_name
-
-
 @pytest.mark.parametrize("take", ["keys"], indirect=True)
 def test_who_looks_elsewhere_lets_go(take: Take):
     player = take(PhysicsScene, "stack")

@@ -105,7 +105,7 @@ def test_what_is_scaled_fills_the_view_while_the_camera_pans_and_zooms_and_other
     sheet, surface = WorldPicture(picture, 48.0), pygame.Surface(VIEW_SIZE)
     spread(A_FRAME)
     try:
-        for step in range(60):
+        for step in range(30):
             zoom = 1.3 + 0.7 * np.sin(step / 5)  # faster than any camera
             spend(A_FRAME)
             surface.fill((0, 0, 0))

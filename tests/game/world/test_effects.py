@@ -154,21 +154,6 @@ def test_an_edge_is_named_and_sounds_before_it_is_crossed(state: tuple[float, ..
     assert "edge" in sound.heard()
 
 
-def test_people_have_more_room_than_networks_are_trained_with():
-    env, flight = LanderEnv(1, 0), begun(3)
-    assert env.limits == LIMITS
-    limits = flight.env.limits
-    assert (limits.half_width, limits.ceiling) == (30.0, 29.0)
-    assert (limits.half_width, limits.ceiling) > (LIMITS.half_width, LIMITS.ceiling)
-    env.reset()
-    for each in (env, flight.env):
-        each.place(np.ones(1, bool), np.array([[21.5, 12.0, 3.0, 0, 0, 0]]))
-    for _ in range(30):
-        flight.step()
-        env.fly(np.array([0]))
-    assert (env.outcome[0], flight.outcome) == (Outcome.OUT_OF_BOUNDS, Outcome.FLYING)
-
-
 def test_a_craft_that_is_whole_comes_to_rest_upright_beside_the_pad():
     for seed in range(4):
         rng = np.random.default_rng(seed)

@@ -8,7 +8,7 @@ from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
 from engine import Sprite
 from game.drawing.canvas import Canvas
 from game.world import lander as art
-from game.world.camera import Camera, View
+from game.world.camera import View
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.themes import LOOKS, look_of
 from game.world.landscape.wind import Wind
@@ -24,15 +24,6 @@ def canvas() -> Canvas:
 
 def pixels(surface: pygame.Surface) -> np.ndarray:
     return pygame.surfarray.array3d(surface)
-
-
-def test_the_same_chance_paints_the_same_moon(canvas: Canvas):
-    pictures = []
-    for _ in range(2):
-        Backdrop(canvas.size, np.random.default_rng(7)).draw(canvas, Camera())
-        pictures.append(pixels(canvas.surface))
-    assert np.array_equal(*pictures)
-    assert pictures[0].any(axis=2).mean() > 0.99  # the whole view is painted
 
 
 def test_the_art_fits_the_physics():
@@ -61,13 +52,13 @@ def test_a_line_of_two_points_is_drawn_alike_whatever_was_drawn_before(canvas: C
 
 
 def test_every_mission_has_the_sky_and_the_ground_of_its_world():
-    canvas = Canvas(pygame.Surface((320, 180)))
+    canvas = Canvas(pygame.Surface((160, 90)))
 
     def colours(look: str) -> np.ndarray:
         """Mean colour above the horizon and below it, (2, 3)."""
         Backdrop(canvas.size, np.random.default_rng(7), look=LOOKS[look]).paint(canvas.surface)
         picture = pygame.surfarray.array3d(canvas.surface).astype(float)
-        return np.array([picture[:, 60:130].mean(axis=(0, 1)), picture[:, 160:].mean(axis=(0, 1))])
+        return np.array([picture[:, 30:65].mean(axis=(0, 1)), picture[:, 80:].mean(axis=(0, 1))])
 
     dawn, mars, earth, night = (colours(look_of(mission)) for mission in ("fall", "mars", "earth", "night"))
     assert (mars[:, 0] > 1.4 * mars[:, 2]).all()  # red
