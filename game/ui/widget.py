@@ -34,9 +34,11 @@ class PointsManager(UIManager):
     """pygame_gui's manager in points: it takes the mouse's position from events instead of asking the window."""
 
     _theme: UIAppearanceTheme | None = None
+    _loader: Any = None  # one that has begun starts no five threads anew for nothing to load
 
     def __init__(self) -> None:
-        super().__init__(VIEW_SIZE, enable_live_theme_updates=False)
+        super().__init__(VIEW_SIZE, enable_live_theme_updates=False, resource_loader=PointsManager._loader)
+        PointsManager._loader = self.resource_loader
         set_default_manager(None)  # pygame_gui would keep the first manager, and with it a whole screen, in memory
         self.mouse_position = (-1, -1)
 

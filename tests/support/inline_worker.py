@@ -7,13 +7,15 @@ import pickle
 from collections.abc import Callable
 from typing import Any
 
+from ai.training import lander_session
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import Function, MessageQueue
 from game.scenes.digits import fixing
 from game.scenes.learn import pay, runs
 from game.training import run as training_run
 
-TURNS = 40  # taken for each poll: some 10 ms of a small training
+TURNS = 10  # taken for each poll: some 10 ms of a small training
+POINT = 64  # decisions from one point of a run's curves to the next
 
 
 class InlineWorker(Worker):
@@ -83,5 +85,6 @@ class InlineWorker(Worker):
 
 def install(patch: Callable[[object, str, object], None]) -> None:
     """Let runs, fixes and measurements work without a process; `patch` sets an attribute, as `setattr` does."""
+    patch(lander_session, "POINT_DECISIONS", POINT)
     for module in (training_run, fixing, pay, runs):
         patch(module, "Worker", InlineWorker)

@@ -1,11 +1,13 @@
 """What is asked about a taste, made up."""
 
 import numpy as np
+import pytest
 
 from ai.lander.environment import Outcome
 from ai.training.preferences import SUMS
 from ai.training.upbringing import Asked, Flight
 from game.scenes.taste.scene import TasteScene
+from game.training.run import TrainingRun
 from game.ui.context import Context
 
 
@@ -24,8 +26,9 @@ def asked(answers: int = 0) -> Asked:
 
 def raised(context: Context) -> TasteScene:
     """Return the screen as it is after a few answers, without a process."""
-    scene = TasteScene(context)
-    scene.run.close()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TrainingRun, "begin", lambda *_: None)
+        scene = TasteScene(context)
     scene.run.asked = asked(3)
     scene.pair.ask(scene.run.asked.question)
     return scene

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,10 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.digits import training
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
+from ai.digits.mnist import TRAIN, load_part
 from ai.digits.validation import Confusion
 from ai.files import STATE_FILE
 from game.core import texts
@@ -24,6 +27,18 @@ from game.ui.context import Context
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import DIGITS as SMALL
+
+
+@pytest.fixture(autouse=True)
+def few_images(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Learn from the first images alone: all of them are copied for a second."""
+    monkeypatch.setattr(training, "load_part", lambda _: few())
+
+
+@cache
+def few() -> tuple[np.ndarray, np.ndarray]:
+    images, labels = load_part(TRAIN)
+    return images[:6_000].copy(), labels[:6_000]
 
 
 @pytest.fixture

@@ -147,14 +147,14 @@ def test_what_goes_wrong_with_a_new_file_is_reported(
 def test_it_is_measured_and_that_is_said_until_the_file_is_saved_again(
     watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str]
 ):
-    monkeypatch.setattr(own, "STARTS", 10)
+    monkeypatch.setattr(own, "STARTS", 3)
     monkeypatch.setattr(files, "Worker", InlineWorker)
     path = pilot_folder.PilotFolder(context.user_dir).new()
     open_pilots(watching)
     written.clear()
     watching.press_on(texts.PILOTS_MEASURE)
     watching.wait(lambda: watching.top.files._worker is None)
-    assert texts.PILOTS_MEASURING.format(count=10) in written
+    assert texts.PILOTS_MEASURING.format(count=3) in written
     (measured,) = pilot_folder.PilotFolder(context.user_dir).measured()
     assert (measured.name, measured.landed <= 0.8) == ("pilot", True)
     assert watching.the(ListRow).rows[0][:2] == ("pilot.py", f"{100 * measured.landed:.1f} %")
@@ -204,6 +204,7 @@ def test_play_hands_over_to_it_and_it_is_no_record(
     open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = pilot_folder.PilotFolder(context.user_dir).new()
+    path.write_text("def act(o): return 0")
     driver = open_game(PlayScene, 3)
     driver.keys(pygame.K_ESCAPE)
     play = driver.app.scenes.stack[0]

@@ -22,7 +22,7 @@ from tests.support.player import Player
 from tests.support.points import point
 from tests.support.small import learn, pause
 
-POINTS = 5
+POINTS = 10
 
 
 @pytest.fixture

@@ -81,7 +81,7 @@ def test_at_the_first_landing_it_offers_once_to_stop_and_look(
     driver.frames(2)
     scene, run = driver.top, driver.top.run
     scene.knobs.ask(SMALL)
-    learn(driver)
+    learn(driver, 5)
     at = run.swarm_state.decisions
     scene.view.lessons.ask(2)
     driver.wait(lambda: isinstance(driver.top, LessonScene))
