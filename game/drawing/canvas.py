@@ -23,7 +23,7 @@ _MOST_EXPLAINED: Final = 256  # areas of a frame, at most
 Align = Literal["left", "centre", "right"]
 SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
 PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # of the world, in points
-GROUND: Final = 80.0  # points at the foot of that page that are ground, and free for words
+GROUND: Final = 40.0  # points at the foot of that page that are ground below any pad, and free for words
 
 Point = tuple[float, float]
 Stamp = tuple[pygame.Surface, tuple[int, int]]  # a picture, and the corner where it is drawn, in pixels
@@ -55,7 +55,7 @@ class Canvas:
         view: all that is seen, in points.
         origin: where the point (0, 0) lies on the surface, in pixels.
         size: the width and height in pixels of the page, or of all that is seen.
-        row: points at the foot of what is read that are a message's now.
+        row: points at the foot of what is read that a message covers now.
         palette: the player's colours for within and beyond limits.
         zoom: factor by which the player wants text enlarged.
         pointer: position of the mouse in points; None while it is not in use.
@@ -103,7 +103,7 @@ class Canvas:
         reading._whole, reading.scale = whole, whole.type
         reading.size, reading.origin = whole.surface.get_size(), (0, 0)
         width, height = reading.size
-        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale - whole.row)
+        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale)
         reading.pointer = None if whole.pointer is None else reading.points(whole.pixels(whole.pointer))
         return reading
 

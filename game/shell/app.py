@@ -223,6 +223,8 @@ class App:
 
     def _obey(self, event: pygame.event.Event) -> None:
         """Do what an event asks of the whole game, or pass it on to a scene."""
+        if self.notes.take(event, self.canvas.reading):
+            return
         if event.type == pygame.KEYDOWN and event.chord and not self._means(event):
             return
         match translate(event):

@@ -1,4 +1,4 @@
-"""Notes: short messages on any screen, in a row below all others."""
+"""Notes: short messages over any screen, at its foot; a click on one puts it away."""
 
 from __future__ import annotations
 
@@ -15,12 +15,11 @@ _STEPS_FADING: Final = 20
 _LONGEST: Final = 220  # characters
 _WIDEST: Final = 480.0  # points of a line; a longer message takes more lines
 _MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
-_COVER: Final = 0.96  # opacity of its strip, over any background
 _APART: Final = 8.0  # points from the strip to the window's edges
 
 
 class Note:
-    """Note that shows one message at a time, for five seconds; the screen gives way to it.
+    """Note that shows one message at a time, for five seconds, and moves nothing that could be clicked.
 
     Attributes:
         text: the message that is shown, or was shown last.
@@ -43,24 +42,33 @@ class Note:
         self._left = max(0, self._left - 1)
 
     def height(self, canvas: Canvas) -> float:
-        """Return how high its row is, in points of what is read; 0 while nothing is said."""
-        return self._write(canvas, drawn=False) if self._left else 0.0
+        """Return how much of the foot it takes, in points of what is read; 0 while nothing is said."""
+        return self._write(canvas, drawn=False).height + _APART if self._left else 0.0
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the message, if one is to be seen, in its row below all others."""
+        """Draw the message, if one is to be seen."""
         if self._left:
             self._write(canvas, drawn=True)
 
-    def _write(self, canvas: Canvas, *, drawn: bool) -> float:
+    def take(self, event: pygame.event.Event, canvas: Canvas) -> bool:
+        """Put the message away by a click on it; return whether it was one."""
+        on_it = event.type == pygame.MOUSEBUTTONDOWN and self._left > 0
+        if not (on_it and self._write(canvas, drawn=False).collidepoint(event.pos)):
+            return False
+        self._left = 0
+        return True
+
+    def _write(self, canvas: Canvas, *, drawn: bool) -> pygame.FRect:
         view, (beside, above) = canvas.view, _MARGINS
         room = min(_WIDEST, view.width - 4 * beside)
         words = Cursor(view.centerx - room / 2, 0.0, room, canvas.scale, size=SMALL, colour=INK)
         high = words.text(self.text).height + 2 * above
+        widest = min(words.measured(self.text), room) + 2 * beside
+        box = pygame.FRect(view.centerx - widest / 2, view.bottom - high - _APART / 2, widest, high)
         if drawn:
-            alpha, widest = min(1.0, self._left / _STEPS_FADING), min(words.measured(self.text), room) + 2 * beside
-            box = pygame.FRect(view.centerx - widest / 2, view.bottom + _APART / 2, widest, high)
-            canvas.rounded(box, 8, PANEL, _COVER * alpha)
+            alpha = min(1.0, self._left / _STEPS_FADING)
+            canvas.rounded(box, 8, PANEL, alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
             words.canvas, words.y = canvas, box.top + above
             words.text(self.text, "centre", alpha)
-        return high + _APART
+        return box

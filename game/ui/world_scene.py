@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 _SIDES: Final = 0.05  # of a window's width, at most `MARGIN`, left free at either side
 _TOP: Final = 18.0  # points above the head
 _SIDE: Final = 280.0  # points of the column at the right side
-_MOST: Final = 0.5  # of the width, that this takes at most, and of the height, that the foot does
+_MOST: Final = 0.5  # of the height that the foot takes at most
+_MOST_SIDE: Final = 0.36  # of the width, that this takes at most: the flight has more
 _INSIDE: Final = 18.0  # points from its edge to its rows
-_COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
 _HINTS: Final = 26.0  # points of a line of hints
 _PADS: Final = 26.0  # points above the foot that pads reach down into the ground
 
@@ -57,15 +57,15 @@ class WorldScene(FormScene):
         canvas, view = self.context.reading(), self.context.reading().view
         margin = min(MARGIN, _SIDES * view.width)
         left, width = margin, view.width - 2 * margin
-        hints = max(_HINTS * len(self.hint_rows(canvas)), canvas.row)  # a message stands in their place
+        hints = _HINTS * len(self.hint_rows(canvas))
         before = -1.0
         while self.foot.height != before:  # it is as high as in the frame before, or is measured first
             before, height = self.foot.height, min(self.foot.height, _MOST * view.height)
-            foot = view.bottom + canvas.row - hints - 2 * STEP - height
+            foot = view.bottom - hints - 2 * STEP - height
             self.foot.lay_out(pygame.FRect(left, foot, width, height), canvas.scale)
         self.free = pygame.FRect(0, 0, view.width, foot)
         if self.side.rows:
-            wide = min(_SIDE, _MOST * view.width)
+            wide = min(_SIDE, _MOST_SIDE * view.width)
             box = pygame.FRect(view.right - wide - min(margin, 36.0), _TOP, wide, foot - _TOP - STEP)
             inside = box.inflate(-2 * _INSIDE, -_INSIDE)
             self.side.lay_out(inside, canvas.scale)
@@ -89,9 +89,8 @@ class WorldScene(FormScene):
     def draw_rows(self, canvas: Canvas) -> None:
         """Draw the rows over the world."""
         if self.side.rows:
-            canvas.panel(self._panel, _COVER)
+            canvas.panel(self._panel, 1.0)  # whatever flies past behind it
             self.side.draw(canvas)
         for panel in (self.head, self.foot):
             panel.draw(canvas)
-        if not canvas.row:
-            self.draw_hints(canvas)
+        self.draw_hints(canvas)

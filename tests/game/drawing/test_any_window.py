@@ -118,8 +118,8 @@ def test_the_view_reaches_to_the_edges_of_any_window_with_the_page_in_its_middle
     assert canvas.pixels(view.topleft) == pytest.approx((0, 0), abs=1)
     assert canvas.pixels(view.bottomright) == pytest.approx((width, height), abs=1)
     assert canvas.reading.pixels(canvas.reading.view.bottomright) == pytest.approx((width, height), abs=1)
-    assert canvas.above(60 * canvas.scale / canvas.type).view == view, "so much stands on the ground"
-    assert canvas.above(200).view.height == pytest.approx(view.height + 80 - 200 * canvas.type / canvas.scale)
+    assert canvas.above(30 * canvas.scale / canvas.type).view == view, "so much stands on the ground"
+    assert canvas.above(200).view.height == pytest.approx(view.height + 40 - 200 * canvas.type / canvas.scale)
 
 
 def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context: Context):
