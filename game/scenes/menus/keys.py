@@ -77,8 +77,10 @@ class BindingCell(RowWidget):
             self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[owner.name]))
         else:
             self.stop()
+            before = self._bindings.table[self._meaning]
+            gone = _BETWEEN.join(self._word(other) for other in before if other != code)
             self._bindings.bind(self._meaning, code)
-            self._on_change("")
+            self._on_change(texts.BINDINGS_NOW.format(key=what, gone=gone) if gone else "")
 
     def _word(self, code: int) -> str:
         return self._controls.gamepad_sign(code) if self._for_pads else self._controls.key_word(self._meaning, code)

@@ -49,6 +49,7 @@ def test_a_key_is_changed_kept_and_named_at_once(table: Driver):
     assert saved(table, "keys") == {"main": ["f"]}
     assert controls(table).word(Held.MAIN) == "F"
     assert not controls(table).listening
+    assert said(table) == texts.BINDINGS_NOW.format(key="F", gone="↑  ·  Space  ·  W")
 
 
 def test_what_menus_need_cannot_be_taken(table: Driver):
