@@ -163,7 +163,8 @@ class ReplayScene(WorldScene):
             ButtonRow(race, self._race, size=SMALL),
         ]
         if more:
-            rows += [ButtonRow(texts.CODE_COPY, self._copy, size=SMALL), self._export_word, self.playback.choice()]
+            rows += [ButtonRow(texts.CODE_COPY, self._copy, size=SMALL), self._export_word]
+            rows.insert(0, self.playback.choice())  # or the arrow to the left of "Less" would go no farther
         rows.append(ButtonRow(*self.unfolding(_OPEN), size=SMALL))
         rows[-1].key = "more"
         foot.flow(rows)
