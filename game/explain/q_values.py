@@ -29,6 +29,7 @@ _AXIS: Final = FIRST + len(ACTION_NAMES) * ROW + 6.0  # the last baseline, below
 HEIGHT: Final = _AXIS + 2.0
 _FIGURE: Final = 52.0  # room for figures, right of the bars
 _BAR: Final = 3.0
+_LEAST: Final = 30.0  # points of a bar; in a narrower place, figures stand without
 
 
 @dataclass(frozen=True)
@@ -71,18 +72,22 @@ class QValues:
 
 
 def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, width: float) -> None:
-    """Draw the expected pay, a bar for each action on the fixed scale, and the scale; in points.
+    """Draw the expected pay, a bar for each action on the fixed scale, and the scale, or figures alone; in points.
 
     `top` is the first baseline; the last is `HEIGHT` below it.
     """
     x, track, right = left + NAME, width - NAME - _FIGURE, left + width
-    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
-    canvas.text(points(values.expected, 1), (x + track, top), size=TEXT, align="right", tabular=True)
+    bars = track >= _LEAST
+    end = x + track if bars else right
+    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=end - left - 72)
+    canvas.text(points(values.expected, 1), (end, top), size=TEXT, align="right", tabular=True)
     canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_EXPECTED)
     for action in range(len(ACTION_NAMES)):
         y = top + FIRST + ROW * action
         _draw_row(canvas, values, action, (left, y), width)
         canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_VALUE, partial(value_words, values, action))
+    if not bars:
+        return
     y = top + _AXIS
     canvas.explain((left, y - 16, width, 22), texts.EXPLAIN_ADVANTAGE.format(span=SPAN))
     canvas.line((x, y - 13), (x + track, y - 13), LINE)
@@ -100,15 +105,16 @@ def _draw_row(canvas: Canvas, values: QValues, action: int, place: tuple[float, 
     (left, y), loss, flown = place, values.loss(action), action == values.flown
     x, track, colour = left + NAME, width - NAME - _FIGURE, INK if flown else MUTE
     canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, room=NAME - 20)
-    tone = NET if flown else mix(FAINT, NET, 0.45)
-    canvas.bar((x, y - 1, track, _BAR), values.fraction(loss), tone)
     if flown:
         canvas.marker("triangle", (x - 8, y), 6, NET)
+    figure = texts.Q_BEST if loss == 0 else behind(loss)
+    canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
+    if track < _LEAST:
+        return
+    canvas.bar((x, y - 1, track, _BAR), values.fraction(loss), NET if flown else mix(FAINT, NET, 0.45))
     if loss > SPAN:  # it lies beyond the left end of the scale
         canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
         canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
-    figure = texts.Q_BEST if loss == 0 else behind(loss)
-    canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:

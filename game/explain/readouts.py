@@ -124,6 +124,7 @@ GAUGES: Final[dict[str, Callable[[LanderEnv, int], Readout]]] = {
 }  # fmt: skip
 # What a pilot needs all the time stands on the left, the rest on the right: the landing pad stands in the middle.
 PILOT: Final = ("altitude", "descent", "drift", "tilt")
+_SPEEDS: Final = ("descent", "drift")
 # The read-out that names a crash, and which of an impact's figures that has.
 FELT: Final = {Cause.HARD: ("descent", 0), Cause.SLIDING: ("drift", 1), Cause.TILTED: ("tilt", 2)}
 
@@ -150,6 +151,12 @@ def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]
     return {**readouts, name: replace(readouts[name], figure=figure, within=False)}
 
 
+def at_rest(readouts: dict[str, Readout]) -> dict[str, Readout]:
+    """Return the last read-outs of a craft that stands now: nothing falls or drifts any more."""
+    still = {name: replace(readouts[name], figure="0.0", fill=0.0, towards=0, within=True) for name in _SPEEDS}
+    return {**readouts, **still}
+
+
 def foot_of(canvas: Canvas, names: Iterable[str]) -> pygame.FRect:
     """Return where a flight's read-outs stand at the foot of its screen, in points."""
     view = canvas.view
@@ -159,10 +166,12 @@ def foot_of(canvas: Canvas, names: Iterable[str]) -> pygame.FRect:
     return pygame.FRect(side, view.bottom - cursor.y - 2 * STEP, cursor.width, cursor.y)
 
 
-def draw_flight(canvas: Canvas, readouts: Mapping[str, Readout], names: Iterable[str] = GAUGES) -> None:
-    """Draw those of a flight's read-outs that are named at the foot of its screen."""
+def draw_flight(
+    canvas: Canvas, readouts: Mapping[str, Readout], names: Iterable[str] = GAUGES, row: float = 0.0
+) -> None:
+    """Draw those of a flight's read-outs that are named at the foot of its screen, above a `row` of points there."""
     shown = {name: readouts[name] for name in names if name in readouts}
-    foot = foot_of(canvas, shown)
+    foot = foot_of(canvas, shown).move(0, -row)
     draw_shade(canvas, foot.top - STEP)
     write_readouts(Cursor(foot.left, foot.top, foot.width, canvas.scale, canvas), shown)
 

@@ -18,6 +18,7 @@ from game.world.camera import ClearArea, View
 
 _ABOVE: Final = 2.0  # metres from the middle of a craft to the words
 _EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
+_COVER: Final = 0.9  # opacity: the path behind the words is hardly seen
 _HEAD, _FOOT = 96.0, 120.0  # points that words keep from the upper edge, and from the lower one
 _OVER_DECK: Final = (0.75, 8.0)  # metres and points between a deck and the factor above it
 _UNDER_DECK: Final = (0.2, 22.0)  # and below a deck, where something else stands above it
@@ -37,13 +38,14 @@ def draw_words(canvas: Canvas, view: View, env: LanderEnv, pose: Doubles) -> Non
         text = texts.CONTACT_LIGHT
     else:
         return
-    x, y = view.point(float(pose[0]), float(pose[1]) + _ABOVE)
+    place, canvas = canvas.pixels(view.point(float(pose[0]), float(pose[1]) + _ABOVE)), canvas.reading
+    x, y = canvas.points(place)
     width = canvas.text_width(text, size=SMALL, weight="medium") + 22
     seen = canvas.view
     x = min(max(x, seen.left + _EDGE + width / 2), seen.right - _EDGE - width / 2)
     y = min(max(y, seen.top + _HEAD), seen.bottom - _FOOT)
+    canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), _COVER)
     if crashed and not whole:
-        canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8)
         canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn)
     else:
         canvas.glow((x - width / 2 + 4, y - 4), 13, INK, 0.9)
@@ -61,14 +63,15 @@ def draw_factors(canvas: Canvas, view: View, flight: Flight[Any], craft: Doubles
     if flight.over or len(pads) < 2:  # the card says what was earned, and may stand there
         return
     shift, metre = float(env.pad_shift[0]), view.pixels_per_metre / view.scale
+    large = canvas.type / canvas.scale  # points of the world for one of text
     for number, pad in pads:
         x, deck = view.point(pad.x + shift, pad.top)
         word = f"×{pad.factor}"
-        width, rise = canvas.text_width(word, size=_TALL, weight="medium"), _CAPITAL * _TALL
-        row = deck - _OVER_DECK[0] * metre - _OVER_DECK[1]
-        box = pygame.FRect(x - width / 2 - 7, row - rise - 6, width + 14, rise + 12)
+        width, rise = canvas.text_width(word, size=_TALL, weight="medium"), _CAPITAL * _TALL * large
+        row = deck - _OVER_DECK[0] * metre - _OVER_DECK[1] * large
+        box = pygame.FRect(x - width / 2, row - rise, width, rise).inflate(14 * large, 12 * large)
         if box.top < clear.head or box.right > clear.right:
-            lower = deck + _UNDER_DECK[0] * metre + _UNDER_DECK[1] - row
+            lower = deck + _UNDER_DECK[0] * metre + _UNDER_DECK[1] * large - row
             box, row = box.move(0, lower), row + lower
         away = math.dist(view.points(craft[:2]).tolist(), box.center) / metre
         seen = min(max((away - _NEAR) / (_FAR - _NEAR), 0.0), 1.0)

@@ -55,6 +55,11 @@ class Scenery:
             self.cut()
 
     @property
+    def starry(self) -> bool:
+        """Whether stars are seen there."""
+        return LOOKS[self._look].stars
+
+    @property
     def across(self) -> float:
         """Horizontal place of the craft on the screen, in points."""
         place = self._flight.poses.now[0, :2]

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 _WIDEST: Final = 440.0
 _MARGIN: Final = 32.0
-_COVER: Final = 0.94  # opacity: neither the Earth nor a path shines through the words
 _AROUND: Final = 16.0  # least points from the sides of the window
 _NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card, and the flight below it
 _TOP: Final = 96.0  # of the card, in a window with room
@@ -70,7 +69,7 @@ class ShownCard:
 
     def draw(self, canvas: Canvas) -> None:
         box = self.box(canvas)
-        canvas.panel(box, _COVER)
+        canvas.panel(box, 1.0)  # neither the Earth nor a path shines through
         rows = Cursor(box.left + _MARGIN, box.top, box.width - 2 * _MARGIN, canvas.scale, canvas)
         self._write(rows, low=canvas.view.height < _LOW)
         canvas.line((rows.left, rows.y), (rows.right, rows.y), LINE)

@@ -22,6 +22,7 @@ from game.ui.listing import shortened
 
 _SIZE: Final = (280.0, 336.0)
 _TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
+_NARROW: Final = 720.0  # points of a window in which it has no room
 _LEFT: Final = 20  # left edge of the content, from the panel's corner
 _WIDTH: Final = _SIZE[0] - 40
 _VALUES: Final = 62  # first baseline of the values, from the panel's top
@@ -56,6 +57,10 @@ class CopilotPanel:
         self.shown = self.values is not None or futures is not None
         self.why = decision_words(decision) if self.values and isinstance(decision, Decision) else ()
         self.lands = futures.lands if futures else self.lands
+
+    def fits(self, canvas: Canvas) -> bool:
+        """Whether a flight has room beside it; in a narrower window, its paths alone say what is thought."""
+        return self.shown and canvas.view.width >= _NARROW
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         view, (width, height) = canvas.view, _SIZE

@@ -37,7 +37,7 @@ _GAUGE, _WORDS = 120.0, 220.0  # points of the gauge's width, and of the words o
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
 _ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
-_CLEAR: Final = 84.0  # points from there up to what the landing has brought
+_CLEAR: Final = 80.0  # points from there up to what the landing has brought
 
 
 class Descent(Challenge):
@@ -159,12 +159,13 @@ class Descent(Challenge):
         if not flight.over:
             _draw_goal(canvas, view, flight.env)
         elif self._landed:
-            craft = view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
-            self._draw_landing(canvas, craft)
+            place = canvas.pixels(view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist())
+            self._draw_landing(canvas.reading, canvas.reading.points(place))
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float]) -> None:
         (x, y), half = craft, _WORDS / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
+        canvas.panel((x - half, y - _CLEAR - 8, _WORDS, 60), 0.9)  # the path behind the words is hardly seen
         rows = Cursor(x - half, y - _CLEAR, _WORDS, canvas.scale, canvas)
         relieved = sentence(texts.DESCENT_RELIEVED, self._relief)
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else relieved

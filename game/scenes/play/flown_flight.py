@@ -19,7 +19,7 @@ from game.core.clock import TimeScale
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.explain.readouts import GAUGES, PILOT, at_touch, draw_flight, flight_readouts, foot_of, yours
+from game.explain.readouts import GAUGES, PILOT, at_rest, at_touch, draw_flight, flight_readouts, foot_of, yours
 from game.flight.choosers import Alone, steered
 from game.flight.credit import ASSISTS, Credit, eased
 from game.flight.flight import Flight, StickHolder, begin
@@ -179,6 +179,8 @@ class FlownFlight:
         if ended:
             self.challenge.ended(self)
         if flight.over:
+            if flight.intact:  # it stands still
+                self._readouts = at_rest(self._readouts)
             self.ending.follow()
             self._finish_card()
         self.scenery.clear = self.clear
@@ -309,8 +311,8 @@ class FlownFlight:
     def _clear_of(self, head: Head) -> ClearArea:
         reading = self.context.reading()
         low, foot = head.write(reading, drawn=False) + _BELOW_HEAD, foot_of(reading, self._shown(whole=False))
-        right = self.copilot_panel.box(reading).left - 16 if self.thinks else reading.view.right
-        return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - low))
+        right = self.copilot_panel.box(reading).left - 16 if self.panel_stands else reading.view.right
+        return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - reading.row - low))
 
     @property
     def thinks(self) -> bool:
@@ -318,13 +320,19 @@ class FlownFlight:
         flies = not (self.waiting or self.flight.over)
         return self._settings.show_thinking and self.copilot_panel.shown and flies
 
+    @property
+    def panel_stands(self) -> bool:
+        """Whether that has a panel beside the flight, too."""
+        return self.thinks and self.copilot_panel.fits(self.context.reading())
+
     def draw(self, canvas: Canvas, alpha: float, head: Head, *, whole: bool, low: float = 0.0) -> None:
         """Draw the world, the craft, the read-outs and the words; `whole` is for all that can be known of it.
 
         `low` is how far a card reaches down, in points, which the read-outs give way to.
         """
         flight, shown = self.flight, self._shown(whole=whole)
-        foot = foot_of(canvas, shown).top
+        row = 0.0 if whole else canvas.row
+        foot = foot_of(canvas, shown).top - row
         world = canvas.above(canvas.view.bottom - foot)
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
@@ -349,18 +357,24 @@ class FlownFlight:
         if marks := self.challenge.words(self).marks:
             marks(world, view, alpha)
         if low < foot:
-            draw_flight(canvas, self._readouts, shown)
+            draw_flight(canvas, self._readouts, shown, row)
         head.write(canvas)
-        if thinks and not self._behind_panel(canvas, view, pose):
+        if thinks and self.copilot_panel.fits(canvas) and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, self.network.name)
 
     def _shown(self, *, whole: bool) -> list[str]:
-        """Name the read-outs: the four that a pilot needs, and what is left of time and of a small tank; or all."""
+        """Name the read-outs: the four that a pilot needs, and what is left of time and of a small tank; or all.
+
+        Where both make a second line, only the one that runs out is seen, and more of the flight.
+        """
         if whole:
             return [name for name in GAUGES if name != "thrust" or not set(self.flight.recording.pushes).issubset(KEYS)]
         env = self.flight.env
         limits = {"fuel": env.conditions.tank < math.inf, "time": env.limits.time < UNHURRIED / 2}
-        return [*PILOT, *(name for name, limited in limits.items() if limited)]
+        others, canvas = [name for name, limited in limits.items() if limited], self.context.reading()
+        if foot_of(canvas, [*PILOT, *others]).height > foot_of(canvas, PILOT).height:
+            others = [min(others, key=lambda name: self._readouts[name].fill or 0.0)]
+        return [*PILOT, *others]
 
     def _behind_panel(self, canvas: Canvas, view: View, pose: Doubles) -> bool:
         """Whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pygame
 
 from game.core import texts
 from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import INK, MARGIN, MUTE, SMALL, TEXT, Colour
+from game.drawing.tokens import INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, Colour
 from game.explain.readouts import Lamp
 from game.flight.networks import titled
 from game.input.bindings import Command
@@ -32,7 +32,10 @@ if TYPE_CHECKING:
 _SIDES, _TOP = 0.05, 20.0  # free at either side, of the width; and points above
 _NARROW: Final = 860.0  # points of a window in which keys stand above names
 _SENTENCE: Final = 18.0
-_WIDEST: Final = 620.0  # points of a line of it
+_WIDEST: Final = 480.0  # points of a line of it, which ends before the Earth
+_COVER: Final = 0.75  # opacity behind words: no star shines through
+_MOST: Final = 0.42  # of a window's height that words take from the flight
+_FEWER: Final[Sequence[dict[str, Any]]] = ({}, {"aside": ()}, {"caption": "", "name": ""}, {"help": None})
 _LINE: Final = 29.0  # from one row of keys to the next
 
 
@@ -49,6 +52,7 @@ class Head:
         controls: the keys of the craft, below the sentence.
         help: the three words of help, the keys that choose one, and what it means; None where nobody can help.
         panel: a panel at the right, which the words keep clear of; None for none.
+        starry: whether stars would shine through.
 
     """
 
@@ -64,10 +68,25 @@ class Head:
     keys: str = ""
     means: Now = field(default=str)
     panel: pygame.FRect | None = None
+    starry: bool = False
 
     def write(self, canvas: Canvas, *, drawn: bool = True) -> float:
         """Write it, or only measure; return the y of its lower end, in points of `canvas.reading`."""
-        return _Layout(self, canvas, drawn).write()
+        laid = self._laid(canvas)
+        if drawn:
+            for box in laid.boxes if self.starry else ():
+                canvas.rounded(box.inflate(16, 4), 8, NIGHT0, _COVER)
+            _Layout(laid.head, canvas, drawn).write()
+        return laid.low
+
+    def _laid(self, canvas: Canvas) -> _Layout:
+        """Lay out all words or, where that leaves too little room for the flight, fewer; the pause has all."""
+        head = self
+        for fewer in _FEWER:
+            laid = _Layout(head := replace(head, **fewer), canvas, drawn=False)
+            if laid.write() <= _MOST * canvas.view.height:
+                break
+        return laid
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the keys at the right, in as many rows as they need."""
@@ -75,9 +94,8 @@ class Head:
 
     def help_boxes(self, canvas: Canvas) -> dict[str, pygame.FRect]:
         """Return where each word of help can be pressed."""
-        layout = _Layout(self, canvas, drawn=False)
-        layout.write()
-        return self.help.boxes(canvas, layout.middle, layout.help_line) if self.help else {}
+        layout = self._laid(canvas)
+        return self.help.boxes(canvas, layout.middle, layout.help_line) if self.help and layout.head.help else {}
 
 
 class _Layout:
@@ -88,7 +106,8 @@ class _Layout:
         self.narrow = view.width < _NARROW
         self.beside = view.width - 2 * self.side if self.narrow else 0.36 * view.width  # room of names, and of keys
         self.right = head.panel.left - 16 if head.panel else view.right
-        self.middle, self.help_line = (view.left + self.right) / 2, 0.0
+        self.middle, self.help_line, self.low = (view.left + self.right) / 2, 0.0, 0.0
+        self.boxes: list[pygame.FRect] = []  # of the words, in points
 
     def cursor(self, left: float, y: float, width: float, size: float, colour: Colour = INK) -> Cursor:
         return Cursor(left, y, width, self.canvas.scale, self.canvas if self.drawn else None, size=size, colour=colour)
@@ -99,14 +118,21 @@ class _Layout:
 
     def write(self) -> float:
         rows = self.key_rows()
-        for row in rows if self.drawn else ():
-            row.draw(self.canvas)
+        for row in rows:
+            self._place(row)
         keys = _TOP + _LINE * len(rows) if rows else 0.0
         names = self._names(keys if self.narrow else 0.0)
         # In flight there is nothing beside the sentence, or so little that both have room.
         alone = not names and (not rows or not self.narrow)
         reach = max((row.width(self.canvas) + self.side for row in rows), default=0.0) if alone else 0.0
-        return max(self._middle(_TOP if alone else max(keys, names) + 8, reach), keys, names)
+        self.low = max(self._middle(_TOP if alone else max(keys, names) + 8, reach), keys, names)
+        return self.low
+
+    def _place(self, row: HintRow) -> None:
+        first, *others = row.boxes(self.canvas)
+        self.boxes.append(first.unionall(others))
+        if self.drawn:
+            row.draw(self.canvas)
 
     def _names(self, top: float) -> float:
         head = self.head
@@ -119,6 +145,11 @@ class _Layout:
             cursor.styled(head.name, TEXT, INK)
         for words in head.aside:
             cursor.text(words)
+        width = max(map(cursor.measured, (head.caption, *head.aside)))
+        width = max(width, cursor.in_style(TEXT, INK).measured(head.name))
+        self.boxes.append(
+            pygame.FRect(cursor.left, max(top, _TOP), min(width, cursor.width), cursor.y - max(top, _TOP))
+        )
         return cursor.y
 
     def _middle(self, top: float, beside: float) -> float:
@@ -131,12 +162,13 @@ class _Layout:
             row = HintRow(head.controls, (0, 0), size=TEXT)
             left = self.middle - row.width(canvas) / 2
             cursor.gap(6)
-            if self.drawn:
-                replace(row, position=(left, cursor.y + TEXT)).draw(canvas)
+            self._place(replace(row, position=(left, cursor.y + TEXT)))
             cursor.gap(LEADING * TEXT)
         if head.help:
             cursor.gap(12)
             self.help_line = cursor.y + SMALL
+            first, *others = head.help.boxes(canvas, self.middle, self.help_line).values()
+            self.boxes.append(first.unionall(others))
             if self.drawn:
                 head.help.draw(canvas, self.middle, self.help_line, head.means, head.keys)
             cursor.gap(LEADING * SMALL + 6)
@@ -147,10 +179,12 @@ class _Layout:
         colour = canvas.palette.warn if head.warns else INK
         top, width = cursor.y, min(cursor.measured(head.sentence), cursor.width)
         cursor.styled(head.sentence, colour=colour, align="centre")
+        left = cursor.left + (cursor.width - width) / 2 - 26
+        self.boxes.append(pygame.FRect(left, top, width + 26, cursor.y - top))
         if self.drawn and head.lamp:
             lamp: Lamp = ("triangle", colour, 0.5) if head.warns else head.lamp
             shape, tint, glow = lamp
-            spot = (cursor.left + (cursor.width - width) / 2 - 18, top + 0.68 * _SENTENCE)
+            spot = (left + 8, top + 0.68 * _SENTENCE)
             canvas.glow(spot, 16, tint, glow)
             canvas.marker(shape, spot, 8 if shape == "circle" else 11, tint)
 
@@ -160,24 +194,36 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     flight, controls, words = flown.flight, flown.context.controls, flown.challenge.words(flown)
     free, said = flown.challenge.rules.free, words.sentence
     waits, lamp = flown.waiting and not flight.over, flown.interventions.lamp(flight)
+    starry = flown.scenery.starry
     helps = flown.help_words if flown.helps and not flight.over else None
     means, chosen = partial(_means, flown), " ".join(map(controls.word, (Command.SLOWER, Command.FASTER)))
     if not (waits or whole or flight.over):
         usual = sentence(flight, flown.credit, flown.interventions.word, controls)
         sentence_now, warns = (said, False) if said else usual
         shown = helps if flown.help_words.shown else None
-        panel = flown.copilot_panel.box(flown.context.reading()) if flown.thinks else None
+        panel = flown.copilot_panel.box(flown.context.reading()) if flown.panel_stands else None
         caption = words.line if words.next else ""  # how far the tutorial is
-        return Head(sentence_now, warns, lamp, caption, hints=hints, help=shown, keys=chosen, means=means, panel=panel)
+        return Head(
+            sentence_now,
+            warns,
+            lamp,
+            caption,
+            hints=hints,
+            help=shown,
+            keys=chosen,
+            means=means,
+            panel=panel,
+            starry=starry,
+        )
     if flown.ending.shown and not whole:
-        return Head(hints=hints)
+        return Head(hints=hints, starry=starry)
     caption, name = words.title, words.line
     network = texts.WITH_NETWORK.format(network=titled(flown.network.name)) if whole and flight.chooser.network else ""
     if free:
         name = name or network
     elif network and flown.challenge.rules.elsewhere:
         caption = texts.DIAL_JOIN.join((caption, network))
-    head = Head(said or "", caption=caption, name=name, aside=_asides(flown, words), hints=hints)
+    head = Head(said or "", caption=caption, name=name, aside=_asides(flown, words), hints=hints, starry=starry)
     if flight.over or not waits:
         return head
     opening = words.opening

@@ -27,7 +27,7 @@ def flight_actions(scene: PlayScene) -> list[Action]:
         Command.HANDOVER: texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER,
         Command.NEXT: words.next,
         Command.RETRY: texts.HINT_RETRY if scene.flown.begun else "",
-        Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
+        Command.PAUSE: scene.leave_word,
     }
     if flight.over or not flight.chooser.network:
         hints[Command.HANDOVER] = ""
@@ -35,7 +35,8 @@ def flight_actions(scene: PlayScene) -> list[Action]:
     if not (scene.waiting or flight.over) and scene.context.controls.mouse_in_use:
         named = _IN_FLIGHT
     table = [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
-    thinks = texts.HINT_THINKS if named is _IN_FLIGHT and flight.chooser.network and not taken else ""
+    asks = named is _IN_FLIGHT or (scene.waiting and not words.next)
+    thinks = texts.HINT_THINKS if asks and flight.chooser.network and not taken else ""
     shows = Action(pygame.K_F1, scene.show_thinking, thinks, Command.MODE)
     mode = scene.context.controls.keys.codes(Command.MODE)  # its button is that of F1
     return [*table, shows, *(Action(code, scene.show_thinking) for code in mode)]

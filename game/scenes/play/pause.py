@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _TITLE, _WORD = 28.0, 20.0
 _COLUMN: Final = 90.0  # points that a column of entries needs
 _AROUND, _EDGE = 24.0, 12.0  # points between rows and the panel's sides, and from there to the edge of the window
-_COVER: Final = 0.94  # opacity: the Earth does not shine through the words
+_BESIDE: Final = (860.0, 480.0)  # points of a window in which a flight is seen beside its choices
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
 
@@ -164,19 +164,32 @@ class FlightPauseScene(PauseScene):
         self.explained.update()
         return super().update()
 
+    @staticmethod
+    def _beside(canvas: Canvas) -> bool:
+        """Whether the flight and its read-outs have room beside the choices; in a small window, they give way."""
+        return canvas.view.width >= _BESIDE[0] and canvas.view.height >= _BESIDE[1]
+
     def room(self, canvas: Canvas) -> pygame.FRect:
         room = super().room(canvas)
+        if not self._beside(canvas):
+            return room
         return pygame.FRect(room.left, _AROUND, room.width, min(row.top for row in self.hint_rows(canvas)) - 36)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        if not self._beside(canvas):
+            return super().hint_rows(canvas)
         left, width = self._between(canvas)
         return hint_lines(self.hints, canvas, (left, foot_of(canvas, GAUGES).top - 20), min(width, self.most))
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        self._flight.flown.draw(canvas, 1.0, Head(), whole=True)
+        view, beside = canvas.view, self._beside(canvas)
+        self._flight.flown.draw(canvas, 1.0, Head(), whole=True, low=0.0 if beside else view.bottom)
+        if not beside:
+            canvas.panel(view, 1.0)
+            return
         box, low = self.panel.box, max(row.position[1] for row in self.hint_rows(canvas))
         cover = pygame.FRect(box.left - _AROUND, _EDGE, box.width + 2 * _AROUND, low)
-        canvas.panel(cover.clip(canvas.view.inflate(-2 * _EDGE, 0)), _COVER)
+        canvas.panel(cover.clip(view.inflate(-2 * _EDGE, 0)), 1.0)  # the Earth does not shine through
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)

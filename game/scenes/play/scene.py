@@ -39,6 +39,7 @@ from game.world import framing
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
+_MOST_HINTS: Final = 4  # of a card
 _INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
 
 
@@ -184,9 +185,18 @@ class PlayScene(Scene):
         if self.ending.card is None:
             return []
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
-        watch = [Action(pygame.K_t, self._watch, texts.CARD_WATCH, Command.STEP)] if self.flown.record else []
+        seen = self.flown.record and not offer
+        watch = [Action(pygame.K_t, self._watch, texts.CARD_WATCH, Command.STEP)] if seen else []
         copy = [Action(pygame.K_k, self._copy, texts.DAILY_HINT_COPY, Command.NEXT)] if self.words.result else []
-        return [*card_actions(self, self._go_on), *offer, *watch, *copy]
+        named = [*card_actions(self, self._go_on), *offer, *watch, *copy]
+        if len(named) < _MOST_HINTS and all(action.key is not Command.PAUSE for action in named):
+            named.append(Action(Command.PAUSE, self.runs[Command.PAUSE], self.leave_word))
+        return named
+
+    @property
+    def leave_word(self) -> str:
+        """What Escape does, in a word."""
+        return texts.HINT_LEAVE if self.leaves else texts.HINT_PAUSE
 
     @property
     def runs(self) -> dict[Command, Run]:

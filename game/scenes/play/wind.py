@@ -31,12 +31,12 @@ def draw_wind(canvas: Canvas, view: View, pose: Doubles, env: LanderEnv, clear: 
         return
     side = -1.0 if push > 0 else 1.0  # from where it comes
     reach = _ARROW[0] + _ARROW[1] * min(1.0, abs(push) / _STRONGEST)
+    size, words = max(SMALL, 12.0 / canvas.scale), texts.WIND_FIGURE.format(push=abs(push))
+    wide = max(reach, canvas.text_width(words, size=size, tabular=True))
     x, y = view.points((pose[0] + side * _BESIDE, pose[1])).tolist()
-    middle, seen = x + side * reach / 2, canvas.view
+    middle, seen = x + side * wide / 2, canvas.view
     if not seen.left + reach < middle < min(clear.right, seen.right) - reach:  # beyond an edge: on the other side
-        middle = view.points((pose[0] - side * _BESIDE, pose[1])).tolist()[0] - side * reach / 2
+        middle = view.points((pose[0] - side * _BESIDE, pose[1])).tolist()[0] - side * wide / 2
     y = min(max(y, seen.top + clear.head), seen.bottom - _LOW)
     draw_arrow(canvas, (middle, y), -side * reach, INK)
-    size = max(SMALL, 12.0 / canvas.scale)
-    words = texts.WIND_FIGURE.format(push=abs(push))
     canvas.text(words, (middle, y - 8), size=size, colour=INK, align="centre", tabular=True)

@@ -152,7 +152,7 @@ def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(share
     assert not panels
 
 
-@pytest.mark.parametrize("size", [(1280, 720), (800, 600)])
+@pytest.mark.parametrize("size", [(1280, 720), (1920, 1080)])
 def test_the_sentence_of_a_flight_keeps_clear_of_the_panel(shared: Driver, monkeypatch: pytest.MonkeyPatch, size):
     drawn: list[tuple[str, pygame.FRect]] = []
     text = Canvas.text
