@@ -22,10 +22,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 
 import numpy as np
 
+from ai.environment import finished
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
-from ai.training.tasks import VALIDATION_SEED, evaluate
+from ai.training.tasks import VALIDATION_SEED, flights
 
 EVERY = 25_000
 FLIGHTS = 300
@@ -68,7 +69,7 @@ def curve(config: Config, seed: int, decisions: int) -> tuple[list[float], float
         training.advance()
         if training.agent.decisions // EVERY > len(landed):
             spent += time.process_time() - started
-            landed.append(evaluate(training.agent, FLIGHTS, VALIDATION_SEED).success)
+            landed.append(finished(flights(training.agent, FLIGHTS, VALIDATION_SEED)).success)
             started = time.process_time()
     return landed, spent
 

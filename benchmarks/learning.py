@@ -30,12 +30,12 @@ from typing import Any
 import numpy as np
 
 from ai.cli.command_line import configured
-from ai.environment import Floats, Ints
+from ai.environment import Floats, Ints, finished
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
-from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, evaluate
+from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, flights
 
 STOPPING_FLIGHTS = 2000  # more: of 500, a network that lands 98.5 % lands 99 % once in four looks
 TEST_FLIGHTS = 2000
@@ -83,12 +83,12 @@ def race(
     What lands of the test spawns decides neither when to stop nor what is kept.
     """
     reached: list[Kept | None] = [None] * len(shares)
-    fly = task.evaluate if task else evaluate
-    scored = followed(training, lambda pilot: fly(pilot, STOPPING_FLIGHTS, VALIDATION_SEED))
+    fly = task.trial if task else flights
+    scored = followed(training, lambda pilot: finished(fly(pilot, STOPPING_FLIGHTS, VALIDATION_SEED)))
     for seconds, decisions, pilot, best in scored:
         ended = seconds >= limit or best.success >= max(shares)
         if ended or any(old is None and best.success >= share for old, share in zip(reached, shares, strict=True)):
-            kept = Kept(seconds, decisions, evaluate(pilot, TEST_FLIGHTS, TEST_SEED))
+            kept = Kept(seconds, decisions, finished(flights(pilot, TEST_FLIGHTS, TEST_SEED)))
             passed = [best.success >= share for share in shares]
             reached = [old or (kept if there else None) for old, there in zip(reached, passed, strict=True)]
         if ended:

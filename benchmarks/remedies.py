@@ -63,7 +63,7 @@ class Watched:
     @property
     def landed(self) -> float:
         """Share of the last hundred flights."""
-        return self._run.training.statistics.success
+        return self._run.training.statistics.shares[0]
 
     def go_on(self, *command: Any) -> Hint | None:
         """Take a step, or carry out a command; return the hint that is shown."""

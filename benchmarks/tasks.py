@@ -30,6 +30,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ai.environment import finished
 from ai.training.config import GYM, LANDER, Config
 from ai.training.loop import Training
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation
@@ -87,11 +88,11 @@ def ours(env: str, decisions: int, seed: int) -> Run:
         while training.agent.decisions < decisions * moment / MOMENTS:
             training.advance()
         spent += time.process_time() - start
-        score = task.evaluate(training.agent, task.validation_episodes, VALIDATION_SEED)
+        score = finished(task.trial(training.agent, task.validation_episodes, VALIDATION_SEED))
         if score.better_than(best):
             best, kept = score, training.best_agent()
     assert kept is not None
-    return earned(task.evaluate(kept, task.test_episodes, TEST_SEED)), training.agent.decisions, spent
+    return earned(finished(task.trial(kept, task.test_episodes, TEST_SEED))), training.agent.decisions, spent
 
 
 def rivals(env: str, share: float, seed: int) -> Run:

@@ -14,6 +14,7 @@ from typing import Any
 from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
+from ai.environment import finished
 from ai.files import brief
 from ai.files.knobs import Knobs
 from ai.sweep.design import DIGITS, Design, Measurement, Metric
@@ -84,5 +85,5 @@ def _trained_to(run: Any, mark: int) -> Measurement:
         pass
     if isinstance(run, DigitTraining):
         return Measurement(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
-    score = run.evaluation or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
+    score = run.evaluation or finished(run.task.trial(run.agent, run.validation_episodes, VALIDATION_SEED))
     return Measurement(run.moment, score.success, score.mean_return)

@@ -9,7 +9,6 @@ from typing import Any, Final, Self
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.schedule import linear
 from ai.agent.storage import AGENT_FILE
 from ai.files import brief, shown
 from ai.files.knobs import knob
@@ -143,8 +142,3 @@ def presets_of(env: str) -> Mapping[str, Config]:
     if env == ANYWHERE:
         return {"anywhere": LANDS_ANYWHERE}
     return PRESETS if env == LANDER else {"gym": gym_config(env)}
-
-
-def touchdown_limits(config: Config, decisions: int) -> float:
-    """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
-    return linear(1.0, config.final_touchdown_limits, decisions, config.schedule_decisions)

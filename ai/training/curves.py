@@ -1,4 +1,4 @@
-"""Recent curves of a training run, as hints and verdicts look at them."""
+"""Curves of a training run, as hints and verdicts look at them."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ai.lander.rewards import FEET_STEPS_PAID
 from ai.training.config import Config
 from ai.training.history import History, SettingChange
 
+LANDS: Final = 0.8  # share of a hundred flights from which a run counts as one that lands
 ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
 FALLEN: Final = 0.3  # share of flights fewer than before a change, from which that is to blame
 COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
@@ -29,12 +30,25 @@ _MOST: Final = 0.5  # share of flights that are most of them
 TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
 
 
-class RecentCurves:
-    """Recent curves of a run, with the questions about them that several rules ask."""
+class Curves:
+    """Curves of a run, and the configuration it was flown with, with the questions about them that several ask."""
 
     def __init__(self, history: History, config: Config) -> None:
         self.history, self.config = history, config
-        self.count = len(history.points)
+
+    @property
+    def turns(self) -> float:
+        """Decisions of each lander so far."""
+        return float(self.history["decisions"][-1]) / self.config.num_envs if len(self.history) else 0.0
+
+    def landed(self, row: int = -1) -> float:
+        """Return the share of the last hundred flights that landed, at a row; 0 before any has ended."""
+        return float(np.nan_to_num(self.history["success_rate"][row])) if len(self.history) else 0.0
+
+    def landed_after(self) -> float:
+        """Decisions of each lander until a hundred flights landed as `LANDS` asks; infinite if they never did."""
+        reached = np.flatnonzero(self.history["success_rate"] >= LANDS)
+        return float(self.history["decisions"][reached[0]]) / self.config.num_envs if len(reached) else float("inf")
 
     def last(self, name: str, points: int = 8) -> float:
         """Median of a column over the last points that are finite; NaN without any."""
@@ -101,10 +115,10 @@ def rate_too_high(config: Config, decisions: int) -> bool:
 
 def caption(history: History) -> str:
     """Return why no flight lands, the name of a text below the chart of landings; empty while some land."""
-    landed = _finite(history["success_rate"])
+    landed = _finite(history["success_rate"])[-1:]
     if not len(landed):
         return "unknown" if len(history) else ""
-    if landed[-1] > 0:
+    if landed[0] > 0:
         return ""
     return next((name for name, column in _ENDS.items() if history[column][-1] >= _MOST), "none")
 
@@ -119,20 +133,18 @@ def median(values: Doubles) -> float:
     return float(np.median(values)) if len(values) else float("nan")
 
 
-def loss_explodes(run: RecentCurves) -> bool:
-    """Whether the loss is ten times what it was, or infinite; NaN means that it is not known."""
-    if np.isinf(run.history["loss"][-1]):
-        return True
-    before = median(run.history["loss"][-208:-8])
-    return run.count >= 60 and before > 0 and run.last("loss") > 10 * before
+def runs_away(run: Curves) -> bool:
+    """Whether the mean Q-value is beyond twice what a flight could earn or lose, or the loss ten times what it was.
 
-
-def values_run_away(run: RecentCurves) -> bool:
-    """Whether the mean Q-value is beyond twice what a flight could earn or lose."""
-    if np.isinf(run.history["mean_q"][-1]):
+    Both have where they are infinite; NaN means that one is not known.
+    """
+    loss, value = run.history["loss"], run.last("mean_q")
+    if np.isinf([loss[-1], run.history["mean_q"][-1]]).any():
         return True
     least, most = returns(run.config)
-    return run.last("mean_q") < 2 * least or run.last("mean_q") > 2 * most
+    before = median(loss[-208:-8])
+    explodes = len(loss) >= 60 and before > 0 and run.last("loss") > 10 * before
+    return explodes or value < 2 * least or value > 2 * most
 
 
 def returns(config: Config) -> tuple[float, float]:

@@ -8,20 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, fields, is_dataclass
-from typing import Any, Final, Literal, NamedTuple
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from ai.files.knobs import Knobs
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config
-from ai.training.curves import RecentCurves, loss_explodes, values_run_away
-from ai.training.history import History
+from ai.training.curves import RATES, Curves, runs_away
 
 _FACTOR: Final = 100.0  # of a rate that is far too high
 Verdict = Literal["as_well", "later", "never", "runs_away"]
 VERDICTS: Final[tuple[Verdict, ...]] = ("as_well", "later", "never", "runs_away")
-LANDS: Final = 0.8  # share of a hundred flights from which a run counts as one that lands
 _NEVER: Final = 0.3  # share below which it does not: near the pad, some land by chance
 _GRACE: Final = 2.0  # times as long as the twin took, after which it is judged
 _LATER: Final = 1.25  # times as long as the twin took, from which it came later
@@ -36,9 +34,7 @@ SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
     "no_exploration": lambda _: {"epsilon_start": 0.0, "epsilon_end": 0.0, "epsilon_spread": 0.0},
     "no_shaping": lambda c: {"reward_weights": RewardWeights(**{**vars(c.reward_weights), **_TERMINAL_ALONE})},
     "short_sight": lambda _: {"discount": 0.8},
-    "rate_times_100": lambda c: {
-        name: min(1.0, _FACTOR * getattr(c, name)) for name in ("learning_rate", "final_learning_rate")
-    },
+    "rate_times_100": lambda c: {name: min(1.0, _FACTOR * getattr(c, name)) for name in RATES},
     "no_normalisation": lambda _: {"layer_normalisation": False},
 }
 
@@ -67,28 +63,7 @@ def differences(before: Config, after: Config) -> dict[str, tuple[Any, Any]]:
     return found
 
 
-class Flown(NamedTuple):
-    """Curves of a run, and the configuration it was flown with."""
-
-    history: History
-    config: Config
-
-    @property
-    def turns(self) -> float:
-        """Decisions of each lander so far."""
-        return float(self.history["decisions"][-1]) / self.config.num_envs if len(self.history) else 0.0
-
-    def landed(self, row: int = -1) -> float:
-        """Return the share of the last hundred flights that landed, at a row; 0 before any has ended."""
-        return float(np.nan_to_num(self.history["success_rate"][row])) if len(self.history) else 0.0
-
-    def landed_after(self) -> float:
-        """Decisions of each lander until a hundred flights landed as `LANDS` asks; infinite if they never did."""
-        reached = np.flatnonzero(self.history["success_rate"] >= LANDS)
-        return float(self.history["decisions"][reached[0]]) / self.config.num_envs if len(reached) else float("inf")
-
-
-def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | None:
+def verdict(healthy: Curves, other: Curves, *, failed: bool = False) -> Verdict | None:
     """Return what came of an experiment; None while it is too early to say, or its twin does not land either.
 
     `failed` says that its training has diverged. It has run away if its mean Q-value or its loss has.
@@ -98,8 +73,7 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | 
     needed = healthy.landed_after()
     if min(healthy.turns, other.turns) < _GRACE * needed:
         return None
-    run = RecentCurves(other.history, other.config)
-    if values_run_away(run) or loss_explodes(run):
+    if runs_away(other):
         return "runs_away"
     if np.nan_to_num(other.history["success_rate"]).max(initial=0.0) < _NEVER:
         return "never"

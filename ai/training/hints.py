@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
 from ai.training.config import Config
-from ai.training.curves import COLLAPSE, RATES, TOO_HIGH, RecentCurves, rate_too_high
+from ai.training.curves import COLLAPSE, RATES, TOO_HIGH, Curves, rate_too_high
 from ai.training.history import History
 
 HOLD: Final = 2.0  # seconds of training for which a rule must hold before its hint appears
@@ -29,31 +29,31 @@ class HintRule(NamedTuple):
     """
 
     name: str
-    holds: Callable[[RecentCurves], bool]
-    remedy: Callable[[RecentCurves], Mapping[str, Any]] = lambda _: {}
-    back_to: Callable[[RecentCurves], int | None] = lambda _: None
+    holds: Callable[[Curves], bool]
+    remedy: Callable[[Curves], Mapping[str, Any]] = lambda _: {}
+    back_to: Callable[[Curves], int | None] = lambda _: None
     of_settings: bool = False
 
 
 # Conditions
 
 
-def _target_stands(run: RecentCurves) -> bool:
+def _target_stands(run: Curves) -> bool:
     """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
     config = run.config
     in_use = config.target_judges or config.fly_target
     return in_use and config.target_update_interval / config.tau > _TARGET_STEPS
 
 
-def _crashes(run: RecentCurves) -> bool:
+def _crashes(run: Curves) -> bool:
     return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("success_rate") <= 0.1
 
 
-def _small_memory(run: RecentCurves) -> bool:
+def _small_memory(run: Curves) -> bool:
     return run.config.replay_size < 8 * run.config.batch_size
 
 
-def _overfed(run: RecentCurves) -> bool:
+def _overfed(run: Curves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
     return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("success_rate") >= 0.6
@@ -62,12 +62,12 @@ def _overfed(run: RecentCurves) -> bool:
 # Remedies
 
 
-def _sane_rates(run: RecentCurves) -> Mapping[str, Any]:
+def _sane_rates(run: Curves) -> Mapping[str, Any]:
     sane = zip(RATES, _SANE[run.config.optimizer], strict=True)
     return {name: rate for name, rate in sane if getattr(run.config, name) > 10 * rate}
 
 
-def _before_damage(run: RecentCurves) -> int | None:
+def _before_damage(run: Curves) -> int | None:
     """Return the moment before a rate was last turned too high, or the beginning."""
 
     def too_high(rate: object) -> bool:
@@ -79,14 +79,14 @@ def _before_damage(run: RecentCurves) -> int | None:
     return checkpoint.decisions if checkpoint else None
 
 
-def _as_before(run: RecentCurves) -> Mapping[str, Any]:
+def _as_before(run: Curves) -> Mapping[str, Any]:
     return {each.name: each.before for each in run.blamed()}
 
 
-def _before(name: str) -> Callable[[RecentCurves], int | None]:
+def _before(name: str) -> Callable[[Curves], int | None]:
     """Return what finds the moment before a change that is to blame, if its name begins so: its traces would stay."""
 
-    def back_to(run: RecentCurves) -> int | None:
+    def back_to(run: Curves) -> int | None:
         turned = [each.decisions for each in run.blamed() if each.name.startswith(name)]
         checkpoint = run.history.checkpoint_at(min(turned)) if turned else None
         return checkpoint.decisions if checkpoint else None
@@ -94,12 +94,12 @@ def _before(name: str) -> Callable[[RecentCurves], int | None]:
     return back_to
 
 
-def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
+def _for_crashes(run: Curves) -> Mapping[str, Any]:
     slow = run.config.optimizer == "sgd" and run.config.learning_rate < 0.02
     return {"optimizer": "adam"} if slow else {}
 
 
-def _less_random(run: RecentCurves) -> Mapping[str, Any]:
+def _less_random(run: Curves) -> Mapping[str, Any]:
     config = run.config
     if config.epsilon_end > 0.2:
         return {"epsilon_end": 0.05}
@@ -107,15 +107,15 @@ def _less_random(run: RecentCurves) -> Mapping[str, Any]:
     return {"epsilon_decay": 0.995} if by_flights else {"epsilon_decisions": 40_000}
 
 
-def _more_memory(run: RecentCurves) -> Mapping[str, Any]:
+def _more_memory(run: Curves) -> Mapping[str, Any]:
     return {"replay_size": max(10_000, 100 * run.config.batch_size)}
 
 
-def _nearer_target(run: RecentCurves) -> Mapping[str, Any]:
+def _nearer_target(run: Curves) -> Mapping[str, Any]:
     return {"target_update_interval": 50} if run.config.tau > 0.5 else {"target_update_interval": 1, "tau": 0.005}
 
 
-def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
+def _fewer_steps(run: Curves) -> Mapping[str, Any]:
     """Take fewer steps where there are many, or let more landers feed them."""
     config = run.config
     enough = 500 * config.num_envs // config.batch_size
@@ -165,7 +165,7 @@ class Adviser:
         if now < self._now:
             self.reset()
         self._now = now
-        run = RecentCurves(history, config)
+        run = Curves(history, config)
         # Before that, curves are those of before a change, and it is not known yet what that has brought.
         steady = run.since_change() >= 100.0 * COLLAPSE  # flights
         holding = {rule.name: rule for rule in RULES if (steady or rule.of_settings) and rule.holds(run)}
@@ -179,7 +179,7 @@ class Adviser:
         self._show(next(ripe, None), run)
         return self.shown
 
-    def _show(self, rule: HintRule | None, run: RecentCurves) -> None:
+    def _show(self, rule: HintRule | None, run: Curves) -> None:
         if rule is None:
             self.shown = None
             return

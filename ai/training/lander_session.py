@@ -67,7 +67,7 @@ class LanderSession(Session[Training]):
             self._point_at = progress.decisions + POINT_DECISIONS
             self.record(progress)
         if progress.decisions >= self._checkpoint_at:
-            self.record(self._checkpoint(self.training.statistics.success))
+            self.record(self._checkpoint(self.training.statistics.shares[Outcome.LANDED - 1]))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
 
     def _tell_validation(self, score: Score | None) -> None:

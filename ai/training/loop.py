@@ -13,12 +13,11 @@ from copy import deepcopy
 from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Any, Final, Self, TypeVar
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
@@ -35,6 +34,7 @@ from ai.training.statistics import EpisodeStatistics
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
 PARTS: Final = tuple(REWARDS)
+A = TypeVar("A", bound=DeepQAgent)
 Network = tuple[Floats, Normalizer | None]  # parameters, and the scale of its observations
 
 
@@ -99,8 +99,7 @@ class Training(Run):
         self.evaluation: Score | None = None
         self.on_step: Callable[[StepResult], None] | None = None
         agent_rng, env_rng = np.random.default_rng([seed, since] if since else seed).spawn(2)
-        replay, optimizer = make_replay(config, task.num_features), make_optimizer(config)
-        self.agent = self._new_agent(config, agent_rng, replay=replay, optimizer=optimizer)
+        self.agent = self._new_learner(config, agent_rng)
         self.env: Env = task.make_env(env_rng)
         try:
             self.observation = self.env.reset()
@@ -114,12 +113,15 @@ class Training(Run):
         self._clocked: deque[float] = deque(maxlen=100)  # `seconds` at the last decisions
         self._began_learning = 0  # gradient steps that were taken before the run began, or went on
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
-        self._flights: Trial[Score] | None = None  # of a validation that is under way
+        self._trial: Trial[Score] | None = None  # a measurement that is under way
 
-    def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
+    def _new_learner(self, config: Config, rng: np.random.Generator) -> DeepQAgent:
+        return self._new_agent(DeepQAgent, config, rng, replay=make_replay(config, self.task.num_features))
+
+    def _new_agent(self, kind: type[A], config: Config, rng: np.random.Generator | None = None, **parts: Any) -> A:
         task = self.task
         parts |= {"symmetry": task.symmetry, "action_chances": task.action_chances}
-        return DeepQAgent(task.num_features, task.num_actions, config, rng, **parts)
+        return kind(task.num_features, task.num_actions, config, rng, **parts)
 
     @property
     def config(self) -> Config:
@@ -203,12 +205,8 @@ class Training(Run):
         if not every or now // every == before // every:
             return self.validate(self.validation_pace)
         score = self.validate()  # of the one before, if it is still under way
-        self._begin_validation()
+        self._trial = self._validation(self.last_agent())
         return score if self.validation_pace else self.validate()
-
-    def _begin_validation(self) -> None:
-        self._end_validation()
-        self._flights = self._validation(self.last_agent())
 
     def _validation(self, agent: DeepQAgent) -> Trial[Score]:
         """Fly validation episodes; keep the network if it is the best so far."""
@@ -223,41 +221,41 @@ class Training(Run):
 
         Returns the score once there is one.
         """
-        flights, self._flights = self._flights, None
-        if flights is None:
+        trial, self._trial = self._trial, None
+        if trial is None:
             return None
         for _ in range(decisions) if decisions else repeat(None):
             if self.stopping():
-                flights.close()
+                trial.close()
                 return None
             try:
-                next(flights)
+                next(trial)
             except StopIteration as done:
                 score: Score = done.value
                 return score
-        self._flights = flights
+        self._trial = trial
         return None
-
-    def _end_validation(self) -> None:
-        if self._flights is not None:
-            self._flights.close()
-        self._flights = None
 
     def evaluate(self) -> Score | None:
         """Try the validation episodes, and keep the network if it is the best so far; None if that was stopped."""
-        self._begin_validation()
+        self._end_trial()
+        self._trial = self._validation(self.last_agent())
         return self.validate()
+
+    def _end_trial(self) -> None:
+        if self._trial is not None:
+            self._trial.close()
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
-        agent = self._new_agent(self.config)
+        agent = self._new_agent(DeepQAgent, self.config)
         agent.restore(*deepcopy(self.best_network or _network(self.agent)))
         agent.decisions, agent.gradient_steps = self.agent.decisions, self.agent.gradient_steps
         return agent
 
     def last_agent(self) -> DeepQAgent:
         """Return a copy of the agent that learns, with an empty replay buffer."""
-        agent = self._new_agent(self.config)
+        agent = self._new_agent(DeepQAgent, self.config)
         agent.copy_from(self.agent)
         return agent
 
@@ -291,21 +289,13 @@ class Training(Run):
             write_agent(last, folder / LAST)
 
         if final:
-            self._test(best, described)
+            self._trial = self.task.trial(best, self.task.test_episodes, TEST_SEED)
+            if score := self.validate():
+                described["evaluation"] = score.to_json()
         return described, write
 
-    def _test(self, best: DeepQAgent, described: dict[str, Any]) -> None:
-        """Measure the best network on test spawns, if that is not stopped."""
-        trial = self.task.trial(best, self.task.test_episodes, TEST_SEED)
-        try:
-            while not self.stopping():
-                next(trial)
-        except StopIteration as done:
-            described["evaluation"] = done.value.to_json()
-        trial.close()
-
     def close(self) -> None:
-        self._end_validation()
+        self._end_trial()
         self.task.close_env(self.env)
 
     @classmethod

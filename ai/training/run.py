@@ -13,9 +13,10 @@ import numpy as np
 
 from ai.files import atomic_folder
 from ai.nn import ModelFormatError
+from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Run
 from ai.training.messages import Saved, problem_of
-from ai.training.state import going_on, read_state, write_state
+from ai.training.state import GOING_ON, read_state, write_state
 
 if TYPE_CHECKING:
     from ai.training.history import History
@@ -38,7 +39,7 @@ def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
     run = kind.begun(folder, **options)
     state = read_state(folder)
     if state is not None:
-        with going_on(folder):
+        with reading(folder, GOING_ON):
             run.load_state(state)
     elif kind.needs_state:
         raise ModelFormatError(folder, "there is nothing to go on with: the run is finished, or its state is gone")

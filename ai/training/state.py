@@ -6,20 +6,19 @@ One archive of arrays and a text in JSON in the run's folder. Without it, the ne
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from ai.files import STATE_FILE, brief, inside, parse_json, problem_in, read_arrays
-from ai.nn import ModelFormatError
+from ai.files import STATE_FILE, inside, parse_json, read_arrays
+from ai.nn.storage import reading
 
 MOST: Final = 100_000_000  # bytes of a state; of a larger memory, the newest part is kept
 _SLACK: Final = 1 << 20  # bytes of an archive beside its numbers
 _VERSION: Final = 2
 _TEXT: Final = "described"
+GOING_ON: Final = f"{STATE_FILE}, without which the run goes on with an empty memory"  # what cannot be read, in words
 
 State = dict[str, Any]  # arrays, and what JSON can hold, by name
 
@@ -34,7 +33,7 @@ def write_state(folder: Path, state: State) -> None:
 
 def read_state(folder: str | Path) -> State | None:
     """Read the state in a run's folder; None if there is none. Raises ModelFormatError."""
-    with going_on(folder):
+    with reading(folder, GOING_ON):
         try:
             arrays = read_arrays(inside(folder, STATE_FILE), MOST + _SLACK)
         except FileNotFoundError:
@@ -43,15 +42,3 @@ def read_state(folder: str | Path) -> State | None:
         if not isinstance(said, dict) or said.get("version") != _VERSION:
             raise ValueError("was saved by another version, and is left as it is")
         return arrays | said
-
-
-@contextmanager
-def going_on(folder: str | Path) -> Iterator[None]:
-    """Raise ModelFormatError, with the way out, for errors of what goes on from a run's state."""
-    try:
-        yield
-    except ModelFormatError:
-        raise
-    except (OSError, KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
-        said = f"{STATE_FILE}: {brief(problem_in(error), 100)}; without this file, the run goes on with an empty memory"
-        raise ModelFormatError(folder, said) from error

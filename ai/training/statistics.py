@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.environment import SUCCESS, Doubles, StepResult
+from ai.environment import Doubles, StepResult
 
 RECENT: Final = 100
 OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is not counted
@@ -31,11 +31,6 @@ class EpisodeStatistics:
         """Whether any episode has ended."""
         return bool(self._recent)
 
-    @property
-    def success(self) -> float:
-        """Share of the last hundred that ended well; 0 before any has ended."""
-        return self.shares[SUCCESS - 1]
-
     def add(self, result: StepResult) -> None:
         """Count one step; slots that have ended begin anew with the next."""
         self.earned += result.reward
@@ -51,9 +46,6 @@ class EpisodeStatistics:
         self.earned[result.ended] = 0.0
         if self._paid is not None:
             self._paid[:, result.ended] = 0.0
-        self._sum_up()
-
-    def _sum_up(self) -> None:
         outcomes, returns, parts = zip(*self._recent, strict=True)
         self.shares = tuple(outcomes.count(outcome + 1) / len(outcomes) for outcome in range(OUTCOMES))
         self.mean_return = sum(returns) / len(returns)

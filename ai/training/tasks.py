@@ -12,8 +12,9 @@ from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
+from ai.agent.schedule import linear
 from ai.agent.symmetry import Symmetry
-from ai.environment import Doubles, Env, Ints, T, finished
+from ai.environment import Doubles, Env, Ints, T
 from ai.files import read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
@@ -21,7 +22,7 @@ from ai.lander.pilots import Pilot
 from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, engines_switched
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
-from ai.training.config import Config, touchdown_limits
+from ai.training.config import Config
 
 VALIDATION_SEED: Final = 1_000_003  # episodes that choose the best checkpoint
 TEST_SEED: Final = 2_000_003  # episodes that have no say in anything, to measure a finished network by
@@ -63,7 +64,6 @@ class Task(ABC, Generic[S]):
     num_features: int  # of an observation
     num_actions: int
     symmetry: Symmetry | None = None  # how a mirror image looks; None if it looks different
-    action_chances: Doubles | None = None  # (actions,) odds of random actions; None for uniform
     evaluate_every: int  # decisions between two validations
     validation_episodes: int
     test_episodes: int
@@ -71,6 +71,11 @@ class Task(ABC, Generic[S]):
 
     def __init__(self, config: Config) -> None:
         self.config = config
+
+    @property
+    def action_chances(self) -> Doubles | None:
+        """Chances of random actions, (actions,); None for uniform."""
+        return None
 
     @abstractmethod
     def make_env(self, rng: np.random.Generator) -> Env:
@@ -92,10 +97,6 @@ class Task(ABC, Generic[S]):
 
         A decision is held for as many steps as in training, unless `frame_skip` says otherwise.
         """
-
-    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> S:
-        """Return the score of a whole `trial`."""
-        return finished(self.trial(pilot, episodes, seed))
 
     def read_score(self, values: Any) -> S:
         """Read what a score's `to_json` gave; raises ValueError for anything else."""
@@ -159,11 +160,6 @@ def flown(pilot: Pilot, env: LanderEnv, measured: slice = slice(None)) -> Trial[
     return Evaluation(len(outcomes), success, crash, out, late, earned, took, burnt, switched)
 
 
-def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random") -> Evaluation:
-    """Return the score of such `flights`."""
-    return finished(flights(pilot, episodes, seed, spawn))
-
-
 def flights(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Trial[Evaluation]:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
     env = LanderEnv(episodes, seed, spawn, frame_skip)
@@ -180,9 +176,10 @@ class LanderTask(Task[Evaluation]):
     symmetry = LANDER_SYMMETRY
     landers: type[LanderEnv] = LanderEnv
 
-    def __init__(self, config: Config) -> None:
-        super().__init__(config)
-        self.action_chances = _action_chances(config)
+    @property
+    def action_chances(self) -> Doubles:
+        main = self.config.random_main
+        return np.array([1 - main] * 3 + [main] * 3) / 3
 
     def make_env(self, rng: np.random.Generator) -> LanderEnv:
         config = self.config
@@ -190,12 +187,16 @@ class LanderTask(Task[Evaluation]):
         return self.landers(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
 
     def apply_live(self, config: Config, env: LanderEnv) -> None:
-        self.config, self.action_chances = config, _action_chances(config)
+        self.config = config
         env.weights = config.reward_weights
 
     def update_env(self, decisions: int, env: LanderEnv) -> None:
         """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
-        env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
+        env.limits = LIMITS.stricter(self._strictness(decisions))
+
+    def _strictness(self, decisions: int) -> float:
+        """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
+        return linear(1.0, self.config.final_touchdown_limits, decisions, self.config.schedule_decisions)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[Evaluation]:
         """Fly so many flights at once from random spawns, one decision at a time.
@@ -225,14 +226,9 @@ class AnywhereTask(LanderTask):
 
     def update_env(self, decisions: int, env: Any) -> None:
         """Tighten the limits of a touchdown over the schedule, from those that are observed to a share of them."""
-        env.strictness = touchdown_limits(self.config, decisions)
+        env.strictness = self._strictness(decisions)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int, frame_skip: int | None = None) -> Trial[Evaluation]:
         env = AnywhereEnv(episodes, seed, "random", frame_skip or self.config.frame_skip, sites=tuple(SITES))
         env.reset()
         return (yield from flown(pilot, env))
-
-
-def _action_chances(config: Config) -> Doubles:
-    main = config.random_main
-    return np.array([1 - main] * 3 + [main] * 3) / 3

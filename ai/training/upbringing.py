@@ -10,12 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.environment import Bools, Doubles, Env, Floats, Ints, StepResult
+from ai.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import FLYING, LANDED
 from ai.lander.spawns import SPAWNS
@@ -51,23 +51,14 @@ class _Learner(DeepQAgent):
     flown: Callable[[], None]
     rests = False
 
-    def train_step(
-        self, env: Env, observation: Floats, epsilon: float | Doubles, held: Ints
-    ) -> tuple[Ints, StepResult]:
-        if self.rests:
-            actions = self.act(observation, epsilon, held)
-            result = env.step(actions)
-        else:
-            actions, result = super().train_step(env, observation, epsilon, held)
-        self.flown()
-        return actions, result
-
     def learn(self) -> float | None:
         """Take gradient steps, once there is any pay to learn from."""
-        return super().learn() if self.paying.points.any() else None
+        return super().learn() if self.paying.points.any() and not self.rests else None
 
     def store(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
-        super().store(observation, actions, replace(result, reward=self.paying.latest), success)
+        if not self.rests:
+            super().store(observation, actions, replace(result, reward=self.paying.latest), success)
+        self.flown()
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,13 +105,9 @@ class Upbringing(Training):
         self._starts: Doubles = np.zeros((self.env.num_envs, 6))
         self._actions: Ints = np.zeros((self.env.num_envs, _LONGEST), dtype=np.intp)
 
-    def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
-        if "replay" not in parts:
-            return super()._new_agent(config, rng, **parts)
-        task = self.task
-        parts |= {"symmetry": task.symmetry, "action_chances": task.action_chances}
-        parts["replay"] = self.memory = PaidMemory(config.replay_size, task.num_features)
-        return _Learner(task.num_features, task.num_actions, config, rng, **parts)
+    def _new_learner(self, config: Config, rng: np.random.Generator) -> DeepQAgent:
+        self.memory = PaidMemory(config.replay_size, self.task.num_features)
+        return self._new_agent(_Learner, config, rng, replay=self.memory)
 
     @property
     def resting(self) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
+from ai.environment import finished
 from ai.lander.push import KEYS
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
@@ -75,7 +76,7 @@ def _training(version: int) -> Training:
 
 def _run(folder: Path, version: int) -> None:
     training, history = _training(version), History()
-    training.best = training.task.evaluate(training.agent, 1, 0)
+    training.best = finished(training.task.trial(training.agent, 1, 0))
     history.append(point(seconds=float(version), decisions=float(version)))
     history.append(Checkpoint(0.0, 0, 0.0, training.agent.network.values.copy(), None))
     history.append(Validation(0, 0.5, 1.0, best=True))

@@ -7,7 +7,8 @@ from functools import partial
 from typing import Final, Literal
 
 from ai.training.config import Config
-from ai.training.experiments import SABOTAGES, VERDICTS, Flown, Verdict, differences, verdict
+from ai.training.curves import Curves
+from ai.training.experiments import SABOTAGES, VERDICTS, Verdict, differences, verdict
 from ai.training.messages import DIVERGED
 from game.core import texts
 from game.drawing.tokens import HUMAN, INK, NET, SMALL, TITLE
@@ -68,7 +69,7 @@ class Laboratory:
             self.close()
         if twin is None or self.came or self._frame % _JUDGED or not (len(run.history) and len(twin.history)):
             return
-        healthy, other = Flown(run.history, run.config), Flown(twin.history, twin.config)
+        healthy, other = Curves(run.history, run.config), Curves(twin.history, twin.config)
         # Another end than a network that diverged says nothing of the experiment.
         self.came = verdict(healthy, other, failed=DIVERGED in twin.problem)
         self._figures = texts.LAB_FIGURES_THEN.format(

@@ -7,7 +7,7 @@ from typing import Final
 
 import pygame
 
-from ai.training.experiments import Flown
+from ai.training.curves import Curves
 from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
@@ -107,7 +107,7 @@ class Swarms:
             canvas.surface.blit(picture.surface, canvas.rect(left, box.top, *swarm.box.size))
             share = landed[number] if number < len(landed) else None
             if moment is not None:
-                share = round(100 * Flown(run.history, run.config).landed(run.history.row_at(moment)))
+                share = round(100 * Curves(run.history, run.config).landed(run.history.row_at(moment)))
             self._write(canvas, left, number, run, names[number], share)
         canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
 

@@ -13,10 +13,11 @@ import ai.training.loop
 import ai.training.run
 from ai.agent.agent import DeepQAgent
 from ai.cli.command_line import configured, stoppable
+from ai.environment import finished
 from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.messages import Saved
-from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask, evaluate
+from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask, flights
 from game.core.assets import MODELS_DIR
 from main import main
 
@@ -38,7 +39,7 @@ def test_evaluate_flies_as_the_network_was_trained_and_prints_an_interval_around
     values = json.loads(capsys.readouterr().out)
     low, high = values.pop("success_interval")
     assert low < values["success"] <= high
-    assert values == evaluate(DeepQAgent.load(model), 10, 3).to_json()
+    assert values == finished(flights(DeepQAgent.load(model), 10, 3)).to_json()
     assert main(["evaluate", "--model", str(model), "--episodes", "10", "--seed", "3"]) == 0
     assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
 

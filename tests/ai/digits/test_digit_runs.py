@@ -79,7 +79,7 @@ def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
     save(training, tmp_path / "run")
     state = tmp_path / "run" / STATE_FILE
     state.write_bytes(b"nothing")
-    with pytest.raises(ModelFormatError, match="without this file"):
+    with pytest.raises(ModelFormatError, match="without which"):
         resume(DigitTraining, tmp_path / "run", data=data)
     state.unlink()
     with pytest.raises(ModelFormatError, match="nothing to go on with"):

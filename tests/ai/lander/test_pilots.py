@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
+from ai.environment import finished
 from ai.lander.environment import OBSERVATION_SCALE
 from ai.lander.pilots import LaggyPilot, NoisyPilot, ScriptedPilot, SensorPilot
-from ai.training.tasks import evaluate
+from ai.training.tasks import flights
 
 
 class Always:
@@ -15,7 +16,7 @@ class Always:
 
 
 def test_the_scripted_pilot_lands():
-    result = evaluate(ScriptedPilot(), 60, 0)
+    result = finished(flights(ScriptedPilot(), 60, 0))
     assert result.success >= 0.95
     assert result.success + result.crash + result.out_of_bounds + result.time_out == pytest.approx(1.0)
     assert result.mean_time

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from ai.environment import finished
 from ai.files import writing
 from ai.pilots.folder import TEMPLATE, Measured, PilotFolder
 from ai.pilots.own import MeasuredPilot
-from ai.training.tasks import evaluate
+from ai.training.tasks import flights
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -61,6 +62,6 @@ def test_the_template_nearly_lands_and_the_example_does(tmp_path: Path):
     ):
         (tmp_path / "pilot.py").write_text(path.read_text().replace("aim = 0.0", f"aim = {aim}"))
         pilot = MeasuredPilot(tmp_path / "pilot.py")
-        score = evaluate(pilot, 24, 7)
+        score = finished(flights(pilot, 24, 7))
         pilot.close()
         assert least <= score.success <= most, (path.name, aim)

@@ -6,7 +6,8 @@ import pytest
 
 from ai.agent.schedule import exploration_of_each
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import SABOTAGES, Flown, sabotaged, verdict
+from ai.training.curves import Curves
+from ai.training.experiments import SABOTAGES, sabotaged, verdict
 from ai.training.loop import Training
 from tests.support.points import HEALTHY, Curve, history
 
@@ -20,7 +21,7 @@ def landing(when: float, **values: float) -> Curve:
 
 def came(curve: Curve, decisions: float = 400_000, **options: bool) -> str | None:
     healthy, other = history(landing(0.2)), history(curve, decisions=decisions)
-    return verdict(Flown(healthy, MODERN), Flown(other, MODERN), **options)
+    return verdict(Curves(healthy, MODERN), Curves(other, MODERN), **options)
 
 
 def test_what_came_of_an_experiment_follows_from_both_curves():
@@ -34,7 +35,7 @@ def test_what_came_of_an_experiment_follows_from_both_curves():
 def test_before_twice_the_time_its_twin_took_it_is_too_early_to_say():
     assert came(landing(0.2), 150_000) is None
     assert came(landing(0.2), 150_000, failed=True) == "runs_away"
-    young = Flown(history(landing(2.0)), MODERN)
+    young = Curves(history(landing(2.0)), MODERN)
     assert verdict(young, young) is None, "its twin does not land either"
 
 

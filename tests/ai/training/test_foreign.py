@@ -15,7 +15,7 @@ import pytest
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import LAST
 from ai.cli.command_line import stoppable
-from ai.environment import ForeignEnvError
+from ai.environment import ForeignEnvError, finished
 from ai.training.config import gym_config, load_agent
 from ai.training.gym_task import AT_ONCE, GymScore, GymTask
 from ai.training.loop import Training
@@ -181,10 +181,10 @@ def test_a_measurement_opens_sixteen_at_once_and_each_episode_is_of_its_own_seed
             return np.zeros(len(observation), int)
 
     odd.Odd.most_open = 0
-    score = task.evaluate(Blind(), 40, 3)
+    score = finished(task.trial(Blind(), 40, 3))
     assert odd.Odd.most_open == AT_ONCE
     assert score.episodes == 40
-    alone = [task.evaluate(Blind(), count, 3).mean_return * count for count in (1, 2, 40)]
+    alone = [finished(task.trial(Blind(), count, 3)).mean_return * count for count in (1, 2, 40)]
     assert alone[2] == score.mean_return * 40
     assert 0 <= alone[1] - alone[0] <= 20
 
@@ -192,7 +192,7 @@ def test_a_measurement_opens_sixteen_at_once_and_each_episode_is_of_its_own_seed
 def test_a_decision_is_held_as_in_training_unless_asked_otherwise_and_the_score_says_how_long():
     task = GymTask(config("Odd", frame_skip=4))
     pilot = Training(config("Odd", frame_skip=4), evaluate_every=0)
-    scores = [task.evaluate(pilot.agent, 2, 0)]
+    scores = [finished(task.trial(pilot.agent, 2, 0))]
     trial = task.trial(pilot.agent, 2, 0, 1)
     while len(scores) == 1:
         try:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
+from ai.environment import finished
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.environment import LanderEnv
 from ai.lander.one_engine import OneEngineEnv
@@ -100,7 +101,7 @@ class TestLearningOthersEnvironments:
             result = env.step(np.full(16, turn % 2))
         assert result.truncated.all(), "what comes next still has a value"
         assert not result.terminated.any()
-        assert task.evaluate(Rocking(), 8, 0).mean_length > 8
+        assert finished(task.trial(Rocking(), 8, 0)).mean_length > 8
 
     def test_a_damaged_scale_is_named(self, tmp_path):
         train_cart_pole(tmp_path / "run", 400)

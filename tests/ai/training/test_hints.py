@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ai.training.config import PRESETS, Config
-from ai.training.curves import RecentCurves, caption, loss_explodes, returns, values_run_away
+from ai.training.curves import Curves, caption, returns, runs_away
 from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint
 from ai.training.history import Checkpoint, History, SettingChange
@@ -24,13 +24,13 @@ def points(**values: Any) -> Curve:
 
 
 def holding(curve: Curve, config: Config = MODERN, **options: Any) -> set[str]:
-    run = RecentCurves(history(curve, **options), config)
+    run = Curves(history(curve, **options), config)
     return {rule.name for rule in RULES if rule.holds(run)}
 
 
 def remedy(name: str, curve: Curve, config: Config = MODERN) -> dict[str, Any]:
     rule = next(rule for rule in RULES if rule.name == name)
-    return dict(rule.remedy(RecentCurves(history(curve), config)))
+    return dict(rule.remedy(Curves(history(curve), config)))
 
 
 # Rules
@@ -52,18 +52,18 @@ def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
 
 
 def test_values_and_losses_that_run_away_are_seen_and_others_are_not():
-    for curve, values, loss in [
-        (later(0.97, loss=0.8), False, True),
-        (later(0.99, loss=float("inf")), False, True),
-        (later(0.9, mean_q=12.0), True, False),
-        (later(0.9, mean_q=-30.0), True, False),
-        (later(0.999, mean_q=float("inf")), True, False),
-        (later(0.97, loss=0.3), False, False),  # modern rises and falls by a factor of 3
-        (points(mean_q=2.9), False, False),
-        (points(loss=NAN, mean_q=NAN), False, False),  # not known, as when a run goes on
+    for curve, ran in [
+        (later(0.97, loss=0.8), True),
+        (later(0.99, loss=float("inf")), True),
+        (later(0.9, mean_q=12.0), True),
+        (later(0.9, mean_q=-30.0), True),
+        (later(0.999, mean_q=float("inf")), True),
+        (later(0.97, loss=0.3), False),  # modern rises and falls by a factor of 3
+        (points(mean_q=2.9), False),
+        (points(loss=NAN, mean_q=NAN), False),  # not known, as when a run goes on
     ]:
-        run = RecentCurves(history(curve), MODERN)
-        assert (values_run_away(run), loss_explodes(run)) == (values, loss)
+        run = Curves(history(curve), MODERN)
+        assert runs_away(run) == ran
 
 
 def test_rules_hold_their_peace(subtests: pytest.Subtests):
@@ -132,12 +132,12 @@ def test_what_stays_of_a_change_leads_back_to_before_it_and_what_was_undone_is_n
     for decisions in (0, 180_000, 380_000):
         run.append(Checkpoint(0.0, decisions, 0.5, np.zeros(3, dtype=np.float32)))
     run.append(change)
-    rule = next(rule for rule in RULES if rule.holds(RecentCurves(run, paid)))
+    rule = next(rule for rule in RULES if rule.holds(Curves(run, paid)))
     assert rule.name == "changed"
-    assert rule.back_to(RecentCurves(run, paid)) == 180_000
-    assert rule.remedy(RecentCurves(run, paid)) == {"reward_weights.time": -0.4}
+    assert rule.back_to(Curves(run, paid)) == 180_000
+    assert rule.remedy(Curves(run, paid)) == {"reward_weights.time": -0.4}
     run.append(replace(change, decisions=210_000, before=change.after, after=change.before))
-    assert RecentCurves(run, MODERN).blamed() == []
+    assert Curves(run, MODERN).blamed() == []
 
 
 @pytest.mark.parametrize("harder", [False, True])
@@ -147,7 +147,7 @@ def test_a_change_is_not_blamed_for_what_harder_starts_have_brought(harder: bool
     run = history(lambda share: falls if share > 0.55 else HEALTHY)
     change = SettingChange(200_000, "reward_weights.time", -0.4, 5.0)
     run.append(change)
-    assert RecentCurves(run, paid).blamed() == ([] if harder else [change])
+    assert Curves(run, paid).blamed() == ([] if harder else [change])
 
 
 def test_a_rate_that_was_turned_too_high_leads_back_to_before_that():
@@ -156,7 +156,7 @@ def test_a_rate_that_was_turned_too_high_leads_back_to_before_that():
     assert rule.name == "rate_too_high"
     for decisions in (0, 180_000, 380_000):
         run.append(Checkpoint(0.0, decisions, 0.5, np.zeros(3, dtype=np.float32)))
-    assert rule.back_to(RecentCurves(run, config)) == 0, "it was so from the start"
+    assert rule.back_to(Curves(run, config)) == 0, "it was so from the start"
     for decisions, before, after in (
         (200_000, 2e-3, 1.0),
         (390_000, 1.0, 0.5),
@@ -164,7 +164,7 @@ def test_a_rate_that_was_turned_too_high_leads_back_to_before_that():
         (396_000, 0.5, "x"),
     ):
         run.append(SettingChange(decisions, "learning_rate", before, after, decisions / 1000))
-        assert rule.back_to(RecentCurves(run, config)) == (380_000 if before == "x" or after == "x" else 180_000)
+        assert rule.back_to(Curves(run, config)) == (380_000 if before == "x" or after == "x" else 180_000)
 
 
 # The adviser

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from ai.agent.schedule import linear
+from ai.environment import finished
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training, run
 from ai.training.run import Limit, save
 from ai.training.statistics import wilson
-from ai.training.tasks import Evaluation, LanderTask, evaluate
+from ai.training.tasks import Evaluation, LanderTask, flights
 
 SMALL = PRESETS["modern"].changed(
     hidden=(16,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=2000, num_envs=8, spawn="near"
@@ -81,20 +82,21 @@ def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
 
 
 def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only():
-    result = evaluate(NoPilot(), 8, 0)
+    result = finished(flights(NoPilot(), 8, 0))
     assert result.success == 0.0
     assert result.crash + result.out_of_bounds + result.time_out == 1.0
     assert result.switches == 0.0
     assert result.mean_time is None
-    assert evaluate(ScriptedPilot(), 6, 3, "near") == evaluate(ScriptedPilot(), 6, 3, "near")
+    assert finished(flights(ScriptedPilot(), 6, 3, "near")) == finished(flights(ScriptedPilot(), 6, 3, "near"))
 
 
 def test_who_is_taught_hard_starts_is_chosen_by_them_too():
     pilot = ScriptedPilot()
-    taught, other = (LanderTask(Config(spawn=spawn)).evaluate(pilot, 12, 3) for spawn in ("widening", "thorough"))
-    assert other == evaluate(pilot, 12, 3, "random")
+    tasks = (LanderTask(Config(spawn=spawn)) for spawn in ("widening", "thorough"))
+    taught, other = (finished(task.trial(pilot, 12, 3)) for task in tasks)
+    assert other == finished(flights(pilot, 12, 3, "random"))
     assert replace(taught, hard=None) == other, "what is reported of random starts is of those alone"
-    nothing = LanderTask(Config(spawn="widening")).evaluate(NoPilot(), 2, 3)
+    nothing = finished(LanderTask(Config(spawn="widening")).trial(NoPilot(), 2, 3))
     assert taught.hard
     assert taught.hard > 0.5
     assert nothing.hard == nothing.success == 0.0
