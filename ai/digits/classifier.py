@@ -83,17 +83,11 @@ class DigitClassifier:
     def load(cls, folder: str | Path) -> DigitClassifier:
         """Read what `save` wrote; raises ModelFormatError, which names what is wrong."""
         folder = Path(folder)
-        read_description(folder)
+        recover_folder(folder)
+        with reading(folder, DIGITS_FILE):
+            check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, VERSION)
         with reading(folder, NETWORK):
             classifier = cls(NeuralNetwork.load(inside(folder, NETWORK)))
             if classifier.predict(np.zeros((1, SIDE, SIDE))).shape != (1, DIGITS):
                 raise ValueError(f"the network has not {DIGITS} outputs")
         return classifier
-
-
-def read_description(folder: str | Path) -> dict[str, Any]:
-    """Return what a classifier's folder says of itself; raises ModelFormatError if it is none."""
-    folder = Path(folder)
-    recover_folder(folder)
-    with reading(folder, DIGITS_FILE):
-        return check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, VERSION)

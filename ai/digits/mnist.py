@@ -15,7 +15,6 @@ import numpy.typing as npt
 from ai.files import problem_in, read_arrays, read_bytes
 
 FOLDER: Final = Path(__file__).parents[2] / "assets" / "mnist"
-SIDE: Final = 28  # pixels along an image
 TRAIN, TEST = "train", "test"
 _LARGEST: Final = 100_000_000  # bytes of a file
 

@@ -16,18 +16,7 @@ from ai.digits.classifier import KIND, DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.handwriting import drawings
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
-from ai.files import (
-    Count,
-    Duration,
-    OneOf,
-    Seed,
-    Share,
-    array_like,
-    inside,
-    number_of,
-    read_as,
-    read_json,
-)
+from ai.files import Count, Duration, OneOf, Seed, Share, array_like, inside, number_of, read_as, read_json
 from ai.nn import OPTIMIZERS, Array
 from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Measured, Run
@@ -219,13 +208,15 @@ class DigitTraining(Run):
 
     @classmethod
     def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
-        config, described = read_settings(folder)
+        network = DigitClassifier.load(folder).network
         with reading(folder, TRAINING_FILE):
+            described = read_as(DescribedRun, read_json(inside(folder, TRAINING_FILE)))
+            config = DigitConfig.from_json(DIGIT_PRESETS[described.preset].to_json() | described.changes)
             run = cls(config, described.seed, data)
         run.step, run.seconds, run.history = described.step, described.seconds, list(described.history)
         run.best = described.held_out
         if run.best is not None:
-            run.best_values = DigitClassifier.load(folder).network.values.copy()
+            run.best_values = network.values.copy()
         return run
 
     def state(self) -> dict[str, Any]:
@@ -265,13 +256,3 @@ class DescribedRun:
     seconds: Duration
     held_out: Share | None
     history: tuple[dict[str, Any], ...]
-
-
-def read_settings(folder: Path) -> tuple[DigitConfig, DescribedRun]:
-    """Return the settings of a run in a folder, and what else its training file says; raises ModelFormatError."""
-    DigitClassifier.load(folder)
-    with reading(folder, TRAINING_FILE):
-        described = read_as(DescribedRun, read_json(inside(folder, TRAINING_FILE)))
-        preset = DIGIT_PRESETS[described.preset].to_json()
-        config = DigitConfig.from_json(preset | described.changes)
-    return config, described

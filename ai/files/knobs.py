@@ -53,10 +53,9 @@ class Knobs:
         """Return what is wrong with the values, a sentence each."""
         return [problem for item in fields(self) if (problem := self.problem_of(item.name, getattr(self, item.name)))]
 
-    def unused(self) -> dict[str, str]:
-        """Return the fields that change nothing because another one is off or 0, each with that other."""
-        needed = {item.name: item.metadata["needs"] for item in fields(self)}
-        return {name: other for name, other in needed.items() if other and not getattr(self, other)}
+    def unused(self) -> list[str]:
+        """Return the names of the fields that change nothing because another one is off or 0."""
+        return [item.name for item in fields(self) if (other := item.metadata["needs"]) and not getattr(self, other)]
 
     def to_json(self) -> dict[str, Any]:
         """Return the values as JSON can hold them, by field."""

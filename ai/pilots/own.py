@@ -86,8 +86,6 @@ class OwnPilot:
 
     """
 
-    work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
-
     def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
         self.path, self.problem, self.reported = path, "", ""
         self.flies_on, self.ready, self.chosen, self.version = False, False, True, 0

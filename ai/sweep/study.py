@@ -191,9 +191,9 @@ class Study:
         better = f"({'less' if self.metric.sign == 1 else 'more'} is better)"
         lines = [f"{trials}, compared by {design.metric}, median of the seeds {better}"]
         if self.damaged:
-            lines.append(f"of {len(self.damaged)} more, the files cannot be read: {_listed(self.damaged)}")
+            lines.append(f"of {len(self.damaged)} more, the files cannot be read: {', '.join(map(str, self.damaged))}")
         if senseless := [trial for trial in self.trials.values() if trial.problem]:
-            numbers = _listed(sorted(trial.number for trial in senseless))
+            numbers = ", ".join(map(str, sorted(trial.number for trial in senseless)))
             lines.append(f"of {len(senseless)}, the settings make no sense: {numbers}: {brief(senseless[0].problem)}")
         if not ranked:
             return "\n".join([*lines, "no trial has a result yet"])
@@ -210,10 +210,6 @@ def settings(params: dict[str, Any]) -> str:
     """Return the settings of a trial in one line."""
     shown = {name: f"{each:.3g}" if isinstance(each, float) else json.dumps(each) for name, each in params.items()}
     return " ".join(f"{name}={value}" for name, value in shown.items()).replace('"', "")
-
-
-def _listed(numbers: Sequence[int]) -> str:
-    return ", ".join(map(str, numbers))
 
 
 def median(values: Sequence[float | None]) -> float | None:

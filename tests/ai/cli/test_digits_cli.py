@@ -11,13 +11,7 @@ import ai.digits.training
 from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import SPLIT_SEED, DigitTraining
-from ai.nn import (
-    ActivationFunctions,
-    ActivationLayer,
-    CostFunctions,
-    FullyConnectedLayer,
-    NeuralNetwork,
-)
+from ai.nn import ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
 from ai.training.run import resume
 from main import main
 

@@ -34,14 +34,7 @@ from ai.files import (
     take_folder,
     write_text,
 )
-from ai.nn import (
-    ActivationFunctions,
-    ActivationLayer,
-    ConvolutionLayer,
-    CostFunctions,
-    ModelFormatError,
-    NeuralNetwork,
-)
+from ai.nn import ActivationFunctions, ActivationLayer, ConvolutionLayer, CostFunctions, ModelFormatError, NeuralNetwork
 from ai.nn.layer import MOST_LAYERS
 from ai.training.config import PRESETS, gym_config
 from ai.training.loop import Training
