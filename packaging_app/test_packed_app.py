@@ -161,7 +161,13 @@ def test_the_archive_is_small_and_has_all_licences(archive: Path, app: Path):
         "pygame_ce.libs",
         f"python{sys.version_info.major}.{sys.version_info.minor}",
     }
-    assert inside <= {*recipe.OWN, *recipe.PACKAGES, "assets", "models"} | libraries | {"tqdm", "numpy", "lib"}
+    assert inside <= {*recipe.OWN, *recipe.PACKAGES, "assets", "models"} | libraries | {
+        "tqdm",
+        "numpy",
+        "lib",
+        "examples",
+        "tranquility_lander",
+    }
     known = dict(libraries_in(app))
     assert known
     assert all(known.values()), [name for name, licence in known.items() if not licence]
