@@ -200,7 +200,7 @@ def _split(context: Context) -> Scene:
     scene = TrainScene(context)
     assert isinstance(scene.view, LanderView)
     scene.view.laboratory.sabotage = "rate_times_100"
-    scene.view.laboratory.fly("never")
+    scene.view.laboratory.fly("few")
     return scene
 
 

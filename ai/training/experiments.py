@@ -15,15 +15,13 @@ import numpy as np
 from ai.files.knobs import Knobs
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config
-from ai.training.curves import RATES, Curves, runs_away
+from ai.training.curves import LANDS, RATES, Curves
 
 _FACTOR: Final = 100.0  # of a rate that is far too high
-Verdict = Literal["as_well", "later", "never", "runs_away"]
-VERDICTS: Final[tuple[Verdict, ...]] = ("as_well", "later", "never", "runs_away")
-_NEVER: Final = 0.3  # share below which it does not: near the pad, some land by chance
+Verdict = Literal["most", "some", "few"]  # of a hundred flights land: `LANDS` or more, less, less than `_FEW`
+VERDICTS: Final[tuple[Verdict, ...]] = ("most", "some", "few")
+_FEW: Final = 0.2
 _GRACE: Final = 2.0  # times as long as the twin took, after which it is judged
-_LATER: Final = 1.25  # times as long as the twin took, from which it came later
-_WORSE: Final = 0.15  # of a share that is worse than the twin's by more than chance
 _TERMINAL_ALONE: Final = {name: 0.0 for name in vars(RewardWeights()) if name != "terminal"}
 _SMALLEST_MEMORY: Final = 100
 _WITHOUT: Final = " without "  # in the name of a preset, before that of what is taken away
@@ -66,16 +64,11 @@ def differences(before: Config, after: Config) -> dict[str, tuple[Any, Any]]:
 def verdict(healthy: Curves, other: Curves, *, failed: bool = False) -> Verdict | None:
     """Return what came of an experiment; None while it is too early to say, or its twin does not land either.
 
-    `failed` says that its training has diverged. It has run away if its mean Q-value or its loss has.
+    `failed` says that its training has diverged: it flies no more.
     """
     if failed:
-        return "runs_away"
-    needed = healthy.landed_after()
-    if min(healthy.turns, other.turns) < _GRACE * needed:
+        return "few"
+    if min(healthy.turns, other.turns) < _GRACE * healthy.landed_after():
         return None
-    if runs_away(other):
-        return "runs_away"
-    if np.nan_to_num(other.history["success_rate"]).max(initial=0.0) < _NEVER:
-        return "never"
-    in_time = other.landed_after() <= _LATER * needed
-    return "as_well" if in_time and other.landed() >= healthy.landed() - _WORSE else "later"
+    landed = round(other.landed(), 2)  # as it is written
+    return "most" if landed >= LANDS else "some" if landed >= _FEW else "few"

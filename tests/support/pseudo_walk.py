@@ -102,7 +102,7 @@ def asked(driver: Driver) -> None:
 def experimented(driver: Driver) -> None:
     """Guess, and fly two runs side by side for a moment."""
     asked(driver)
-    driver.press_on(texts.LAB_GUESSES["later"])
+    driver.press_on(texts.LAB_GUESSES["some"])
     driver.wait(lambda: driver.top.run.twin and len(driver.top.run.twin.history) >= 2)
     driver.press_on(texts.TRAIN_PAUSE)
     driver.frames(5)

@@ -71,9 +71,14 @@ class Laboratory:
             return
         healthy, other = Curves(run.history, run.config), Curves(twin.history, twin.config)
         # Another end than a network that diverged says nothing of the experiment.
-        self.came = verdict(healthy, other, failed=DIVERGED in twin.problem)
-        self._figures = texts.LAB_FIGURES_THEN.format(
-            count=int(twin.history["decisions"][-1]), other=100 * other.landed(), healthy=100 * healthy.landed()
+        failed = DIVERGED in twin.problem
+        self.came = verdict(healthy, other, failed=failed)
+        self._figures = (
+            twin.problem
+            if failed
+            else texts.LAB_FIGURES_THEN.format(
+                count=int(twin.history["decisions"][-1]), other=100 * other.landed(), healthy=100 * healthy.landed()
+            )
         )
 
     # Pages
@@ -128,9 +133,9 @@ class Laboratory:
         column.caption(texts.LAB_CAME)
         if self.came:
             right = texts.LAB_AS_GUESSED if self.came == self.guess else texts.LAB_NOT_AS_GUESSED
-            column.text(f"{self._figures} {texts.LAB_CAME_OF[self.came]} {right}", size=SMALL, colour=NET)
+            column.text(f"{self._figures} {right}", size=SMALL, colour=NET)
             why = texts.SABOTAGE_WHY[self.sabotage]
-            column.text(texts.LAB_NOT_MISSED.format(why=why) if self.came == "as_well" else why, size=SMALL)
+            column.text(texts.LAB_NOT_MISSED.format(why=why) if self.came == "most" else why, size=SMALL)
         else:
             column.text(lambda: twin.problem or texts.LAB_TOO_EARLY, size=SMALL, colour=HUMAN)
         if self.came:
@@ -138,7 +143,7 @@ class Laboratory:
             following = names[(names.index(self.sabotage) + 1) % len(names)]
             words = texts.LAB_NEXT.format(name=texts.SABOTAGES[following][0])
             column.button(words, partial(self._ask, following), colour=HUMAN)
-        column.words([(texts.LAB_END, self.end), (texts.BACK, self.close)])
+        column.words([(texts.BACK, self.close), (texts.LAB_END, self.end)])
 
 
 def listed_differences(before: Config, after: Config) -> str:

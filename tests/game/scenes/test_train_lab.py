@@ -30,7 +30,7 @@ from tests.support.written import words_written
 def split(driver: Driver, sabotage: str = "rate_times_100") -> None:
     driver.press_on(texts.TRAIN_EXPERIMENTS)
     driver.press_on(texts.SABOTAGES[sabotage][0])
-    driver.press_on(texts.LAB_GUESSES["never"])
+    driver.press_on(texts.LAB_GUESSES["few"])
     driver.wait(lambda: driver.top.run.twin and len(driver.top.run.twin.history) >= 2)
     driver.frames(2)
 
@@ -139,8 +139,8 @@ def test_the_lab_asks_for_a_guess_flies_both_and_goes_on_with_the_run(train: Dri
     train.press_on(texts.SABOTAGES["no_replay"][0])
     assert laboratory.page == "guess"
     assert not scene.run.twin
-    train.press_on(texts.LAB_GUESSES["never"])
-    assert (laboratory.page, laboratory.guess) == ("result", "never")
+    train.press_on(texts.LAB_GUESSES["few"])
+    assert (laboratory.page, laboratory.guess) == ("result", "few")
     assert scene.run.twin.config == sabotaged(SMALL, "no_replay")
     train.wait(lambda: len(scene.run.twin.history) >= 2 and len(scene.run.history) >= 2)
     train.frames(25)  # they are judged now and then
@@ -171,7 +171,7 @@ def test_a_verdict_is_given_once_with_the_numbers_it_goes_by(train: Driver, monk
         twin.history.append(replace(HEALTHY, decisions=1000.0 * len(run), success_rate=0.1))
         laboratory._frame = -1
         laboratory.update()
-    assert laboratory.came == "never"
+    assert laboratory.came == "few"
     figures = laboratory._figures
     laboratory._run.history, laboratory._frame = twin.history, -1
     laboratory.update()
