@@ -13,31 +13,34 @@ from game.drawing.paint import PIECE, Sheet, blocks
 from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 
+_STARS: Final = 70
 _FINE: Final = 270  # lines in which the night is computed; each of their pixels fills a square of the window's
 _GLOW: Final = (150, 170, 220)  # of a bright star
 
 
 class NightSky:
-    """Still night sky. Its picture without stars is shared by all screens with the same glow."""
+    """Still night sky. Its picture without stars is shared by all screens."""
 
-    def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
-        self._places, self._brightness = rng.random((stars, 2)), rng.random(stars) ** 4
-        self._ember = ember
+    def __init__(self, rng: np.random.Generator) -> None:
+        self._places, self._brightness = rng.random((_STARS, 2)), rng.random(_STARS) ** 4
         self._size = (0, 0)  # of the window for which the stars were painted, in pixels
         self._dots: list[Stamp] = []
         self._glows: list[Stamp] = []
 
-    def draw(self, canvas: Canvas) -> None:
-        """Draw the sky over the whole view."""
-        canvas = canvas.whole
+    def draw(self, canvas: Canvas, *clear: pygame.FRect) -> None:
+        """Draw the sky over the whole view, without stars in these boxes."""
+        places, canvas = [canvas.rect(*box) for box in clear], canvas.whole
         surface, size = canvas.surface, canvas.surface.get_size()
         if size != self._size:
             self._size, self._dots, self._glows = size, [], []
             for place, brightness in zip(self._places.tolist(), self._brightness.tolist(), strict=True):
                 self._paint(canvas, place, brightness)
-        surface.blit(_night(size, self._ember).picture, (0, 0))
+        night = _night(size).picture
+        surface.blit(night, (0, 0))
         surface.fblits(self._dots)
         surface.fblits(self._glows, pygame.BLEND_RGB_ADD)
+        for place in places:
+            surface.blit(night, place, place)
 
     def _paint(self, canvas: Canvas, place: tuple[float, float], brightness: float) -> None:
         """Paint a star at a place in shares of the view; it fades towards the horizon, and a bright one glows."""
@@ -54,20 +57,20 @@ class NightSky:
 
 
 @lru_cache(maxsize=4)
-def _night(size: tuple[int, int], ember: float) -> InPieces[pygame.Surface]:
-    """Return a sky without stars, kept for all screens with the same one."""
-    return InPieces(partial(_paint_night, size, ember))
+def _night(size: tuple[int, int]) -> InPieces[pygame.Surface]:
+    """Return a sky without stars, kept for all screens."""
+    return InPieces(partial(_paint_night, size))
 
 
-def _paint_night(size: tuple[int, int], ember: float, share: float) -> Steps[pygame.Surface]:
+def _paint_night(size: tuple[int, int], share: float) -> Steps[pygame.Surface]:
     """Paint a sky without stars, of so many pixels, at a share of its resolution."""
     times = max(2, size[1] // round(_FINE * share))  # too smooth to need every pixel
     width, height = -(-size[0] // times), -(-size[1] // times)
     across = np.linspace(0, 1, width, dtype=np.float32)[None, :]
     down = np.linspace(0, 1, height, dtype=np.float32)[:, None]
-    low = ember * 0.6 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2
+    low = 0.3 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2
     away = np.hypot((across - 0.78) * 1.5, (down - 1.06) * 1.9)
-    near = ember * 0.55 * np.clip(1 - away, 0, 1) ** 2.2
+    near = 0.275 * np.clip(1 - away, 0, 1) ** 2.2
     channels = []
     for night0, night1, dusk, glow in zip(NIGHT0, NIGHT1, DUSK, EMBER, strict=True):
         sky = night0 + (night1 - night0) * down

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _SIDES: Final = 0.05  # of a window's width, at most `MARGIN`, left free at either side
 _ENDS: Final = 0.07  # of its height, above and below
+_CLEAR: Final = 16.0  # points beside the panel without stars
 _WIDEST: Final = VIEW_SIZE[0] - 2.0 * MARGIN  # points between the margins; a wider window has wider margins
 
 
@@ -42,7 +43,7 @@ class PanelScene(FormScene):
     def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
         super().__init__(context, on_back)
         self.panel = Panel(self.form)
-        self._sky = NightSky(context.rng, ember=0.5, stars=70)
+        self._sky = NightSky(context.rng)
 
     @abstractmethod
     def describe(self, panel: Panel) -> None:
@@ -86,7 +87,8 @@ class PanelScene(FormScene):
         return outcome
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
-        self._sky.draw(canvas)
+        room = self.room(canvas)
+        self._sky.draw(canvas, pygame.FRect(room.left - _CLEAR, room.top, room.width + 2 * _CLEAR, self.panel.height))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         self.draw_behind(canvas, alpha)

@@ -53,7 +53,7 @@ class WhyNotTab:
         self._build()
 
     def update(self) -> None:
-        if self.contrast and not self.contrast.done and self.contrast.advance():
+        if self.contrast and self.contrast.left and self.contrast.advance():
             self._compare()
             self._build()
 
@@ -73,7 +73,7 @@ class WhyNotTab:
         contrast, asked = self.contrast, self.asked
         self.changes: list[InkChange] = []
         self.says = np.zeros((SIDE, SIDE), np.float32)
-        if contrast and contrast.done and asked != contrast.answer:
+        if contrast and not contrast.left and asked != contrast.answer:
             changes = [contrast.best(asked, ink) for ink in (0, 1)]
             self.changes = [each for each in changes if each and figure(each.before) != figure(each.after)]
             between = [each[..., asked] - each[..., contrast.answer] for each in (contrast.taken, contrast.put)]
@@ -108,11 +108,11 @@ class WhyNotTab:
         answer.text(texts.WHY_NOT_READS.format(digit=best, percent=certainty(float(self.probabilities[best]))))
         answer.gap()
         answer.widget(DigitBars(self.ask, self.asked)).values = self.probabilities.tolist()
-        if self.contrast is None:
+        if (contrast := self.contrast) is None:
             evidence.text(texts.WHY_NOT_STRANGE, colour=MUTE)
-        elif not self.contrast.done:
-            evidence.text(texts.WHY_NOT_MEASURING)
-        elif self.asked == self.contrast.answer:
+        elif contrast.left:
+            evidence.text(lambda: texts.WHY_NOT_MEASURING.format(left=contrast.left), tabular=True)
+        elif self.asked == contrast.answer:
             evidence.text(texts.WHY_NOT_SAME)
         else:
             evidence.add(self._write_changes)

@@ -175,6 +175,8 @@ class PlaneChapter(Chapter):
 
         def paint(sheet: Canvas) -> None:
             colours = NIGHT0 + np.abs(share) * (np.where(share < 0, warn, good) - NIGHT0)
+            away = np.abs(share) / (np.hypot(*np.gradient(share, axis=(0, 1))) + 1e-9)  # cells from where it is 0
+            colours += np.clip(0.9 - away, 0.0, 1.0) * (np.array(INK) - colours)
             picture = pygame.surfarray.make_surface(colours.astype(np.uint8))
             sheet.surface.blit(pygame.transform.smoothscale(picture, sheet.size), (0, 0))
 

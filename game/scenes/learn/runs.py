@@ -200,6 +200,7 @@ RIGHT: Final = (
 # No flight from any height below the ceiling can score more points than this: a landing is paid 120, and all else,
 # coming down, slowing down and both feet, at most 160.
 BOUND: Final = 300.0
+_TOLD: Final = 20  # decisions after which a verdict is told anew
 _MORE: Final = 0.2  # share of landings by which one agent is better than another
 
 
@@ -218,6 +219,13 @@ class TargetChapter(DuelChapter):
     def peaks(self) -> tuple[float, ...]:
         """Largest value that each run expected of its landers so far, in points."""
         return tuple(float(np.nanmax(self.history(run, "value"))) for run in range(2))
+
+    def update(self) -> None:
+        """Tell of values that have run away at once, and anew while the runs go on."""
+        super().update()
+        if self.running and self.states and self.flown == 0 and self.peaks[1] > BOUND:
+            self.came = 2
+            self.tried, self.changed = True, self.changed or not self.tried or len(self.states) % _TOLD == 0
 
     def finish(self) -> None:
         if self.flown == 0:

@@ -20,7 +20,7 @@ from game.ui.panel_scene import PanelScene
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
-_AROUND, _LOWEST = 210.0, 0.85  # points above and below the picture; the least share of its height
+_AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
 _LISTING: Final = 320.0  # height of a listing
 
 

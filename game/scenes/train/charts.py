@@ -14,7 +14,6 @@ import pygame
 from ai.agent.decision import in_points
 from ai.environment import Doubles
 from ai.training.history import REVERTED, History, SettingChange
-from ai.training.loop import PARTS
 from game.core import texts
 from game.drawing import prose
 from game.drawing.canvas import Canvas
@@ -70,13 +69,11 @@ def _held_out(history: History) -> Line:
 
 
 def _earned(history: History) -> str:
-    """Say what a flight earns, by the parts of its pay that give and take most, and what the network expects."""
-    parts, earned, expected = history.parts[-1], history[SCORE][-1], _expected(history)[1][-1]
-    if not np.isfinite([*parts, earned, expected]).all():
+    """Say what a flight earns, and what the network expects."""
+    earned, expected = history[SCORE][-1], _expected(history)[1][-1]
+    if not np.isfinite([earned, expected]).all():
         return ""
-    gives, takes = (texts.REWARD_PARTS[PARTS[number]][0] for number in (parts.argmax(), parts.argmin()))
-    figures = {"gives": gives, "given": parts.max(), "takes": takes, "taken": parts.min()}
-    return texts.TRAIN_SCORES.format(earned=earned, expected=expected, **figures).replace("-", "−")
+    return texts.TRAIN_SCORES.format(earned=earned, expected=expected).replace("-", "−")
 
 
 def _read(history: History) -> str:

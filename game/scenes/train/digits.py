@@ -7,14 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
 import pygame
 
 from ai.training.history import REVERTED
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
-from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
 from game.scenes.train.charts import DIGIT_CHARTS
 from game.scenes.train.digit_views import ConfusionMatrix
@@ -55,7 +53,6 @@ class DigitView(View):
 
     def __init__(self, scene: TrainScene) -> None:
         super().__init__(scene)
-        self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.matrix = ConfusionMatrix((0, 0, 100, 100))
 
     @staticmethod
@@ -153,7 +150,6 @@ class DigitView(View):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the headings of the matrix, and the chosen cell's digits."""
-        self._sky.draw(canvas)
         if not self._shows_misread:
             return
         box, run = self.matrix.box, self.run

@@ -15,17 +15,20 @@ from game.ui.panel import Column
 
 
 def describe_few(column: Column, kind: RunKind, settings: RunSettings, names: Sequence[str]) -> None:
-    """Add the preset's name, and a few knobs."""
-    _describe_preset(column, kind, settings)
+    """Add a few knobs; one that has taken another's place says why."""
     for name in names:
         _describe_knob(column, kind, settings, name)
         column.explain(_help(kind, settings, name))
+        if name not in kind.first:
+            column.aside(texts.KNOBS_LAST)
 
 
 def describe_page(column: Column, kind: RunKind, settings: RunSettings, close: Callable[[], None]) -> None:
     """Add the presets, and every knob with what it does, and the chapter that explains it."""
-    _describe_preset(column, kind, settings)
     words = kind.words()
+    column.text(words[settings.preset][0], size=TITLE)
+    if settings.changed:
+        column.aside(texts.KNOBS_CHANGED)
     column.aside(words[settings.preset][1])
     others = [preset for preset in kind.presets if settings.changed or preset != settings.preset]
     column.words([(texts.BACK, close), *((words[preset][0], partial(settings.load, preset)) for preset in others)])
@@ -36,18 +39,6 @@ def describe_page(column: Column, kind: RunKind, settings: RunSettings, close: C
         if chapter:
             title = texts.KNOBS_CHAPTER.format(chapter=texts.LEARN[chapter]["title"])
             column.button(title, partial(push, "chapter", chapter), size=SMALL).pad = 1.0
-
-
-def describe_answers(column: Column, settings: RunSettings) -> None:
-    """Add what was refused, and whether something takes a new run."""
-    if settings.problem or settings.waits:
-        column.text(settings.problem or texts.KNOBS_STARTS_ANEW, size=SMALL, colour=HUMAN)
-
-
-def _describe_preset(column: Column, kind: RunKind, settings: RunSettings) -> None:
-    column.text(kind.words()[settings.preset][0], size=TITLE)
-    if settings.changed:
-        column.aside(texts.KNOBS_CHANGED)
 
 
 def _help(kind: RunKind, settings: RunSettings, name: str) -> str:

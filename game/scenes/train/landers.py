@@ -85,8 +85,8 @@ class LanderView(View):
         return self.context.settings.is_open(INSIDE)
 
     @property
-    def page(self) -> bool:  # type: ignore[override]
-        return self.fills or bool(self.laboratory.page)
+    def page(self) -> Hashable:  # type: ignore[override]
+        return self.fills or self.laboratory.page
 
     @property
     def titled(self) -> bool:  # type: ignore[override]

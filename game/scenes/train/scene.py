@@ -177,8 +177,8 @@ class TrainScene(FormScene):
         run, settings = self.run, self.knobs
         if run.problem:
             column.text(run.problem, size=SMALL, colour=HUMAN)
-        elif not self.view.describe_hint(column):
-            knobs.describe_answers(column, settings)
+        elif not self.view.describe_hint(column) and (settings.problem or settings.waits):
+            column.text(settings.problem or texts.KNOBS_STARTS_ANEW, size=SMALL, colour=HUMAN)
         if words := self.view.unfinished:
             column.button(
                 texts.TRAIN_GO_ON, partial(self.start, settings.asked, 0, run.collection.unsaved), words, colour=HUMAN

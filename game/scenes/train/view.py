@@ -37,7 +37,7 @@ class View(ABC):
         moment: what is shown of a run, in decisions; None for now.
         fills: whether it takes the place of charts and title.
         titled: whether there is room for the title.
-        page: whether it takes the place of the knobs.
+        page: which page takes the place of the knobs; nothing true for none.
         first: names of the few knobs.
         unfinished: what is said of a run that was left, and can go on; empty without one.
         worth_keeping: whether there is a run without a name that has learnt.
@@ -49,7 +49,8 @@ class View(ABC):
     charts: ClassVar[Mapping[str, ChartKind]]
     preset: ClassVar[str]
     moment: int | None = None
-    fills, page, titled = False, False, True
+    fills, titled = False, True
+    page: Hashable = False
     unfinished: str
     worth_keeping: bool
     key: Hashable

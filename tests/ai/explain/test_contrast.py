@@ -25,7 +25,7 @@ def classifier(request):
 @pytest.fixture(scope="module")
 def contrast(classifier):
     contrast = Contrast(classifier, load_part("test")[0][8])
-    while not contrast.done:
+    while contrast.left:
         contrast.advance()
     return contrast
 
@@ -68,7 +68,7 @@ def test_what_is_named_early_is_true_before_all_is_measured(classifier):
     contrast = Contrast(classifier, image)
     assert contrast.best(7, 0) is None
     contrast.advance()
-    assert not contrast.done
+    assert contrast.left
     measured_now = int(np.isfinite(contrast.taken[..., 0]).sum())
     assert measured_now == contrast.batch
     ink = np.lib.stride_tricks.sliding_window_view(np.pad(image, 1), (3, 3)).sum(axis=(2, 3))
@@ -80,7 +80,7 @@ def test_what_is_named_early_is_true_before_all_is_measured(classifier):
 
 def test_an_empty_image_has_nothing_to_say_and_a_strange_network_is_refused(classifier):
     empty = Contrast(classifier, np.zeros((28, 28), np.float32))
-    assert empty.done
+    assert not empty.left
     assert empty.best(3, 0) is None
     network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(784, 10))
     network.add_layer(LayerNormalisation(10))

@@ -175,7 +175,7 @@ def why_not(open_game: Open, context: Context, classic, nine) -> Driver:
 
 def measured(driver: Driver) -> WhyNotTab:
     top = driver.top.why_not
-    while not top.contrast.done:
+    while top.contrast.left:
         top.update()
     driver.frames(2)
     return top
