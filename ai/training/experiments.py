@@ -10,8 +10,6 @@ from collections.abc import Callable
 from dataclasses import asdict, fields, is_dataclass
 from typing import Any, Final, Literal
 
-import numpy as np
-
 from ai.files.knobs import Knobs
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config

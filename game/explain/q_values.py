@@ -1,4 +1,4 @@
-"""Q-value panel: the value of each action in points of reward, drawn alike wherever a decision is shown."""
+"""The six actions, drawn alike wherever a decision is shown: each with its value, or whether the network then lands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from game.core import texts
 from game.core.catalogue import capital
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, Colour
 from game.explain.figures import points
 
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
@@ -30,6 +30,7 @@ HEIGHT: Final = _AXIS + 2.0
 _FIGURE: Final = 52.0  # room for figures, right of the bars
 _BAR: Final = 3.0
 _LEAST: Final = 30.0  # points of a bar; in a narrower place, figures stand without
+_LANDS: Final = {True: "lands", False: "lost", None: "unknown"}
 
 
 @dataclass(frozen=True)
@@ -102,16 +103,14 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
 
 def _draw_row(canvas: Canvas, values: QValues, action: int, place: tuple[float, float], width: float) -> None:
     """Draw an action: its name, its bar, and how far it is behind the best."""
-    (left, y), loss, flown = place, values.loss(action), action == values.flown
-    x, track, colour = left + NAME, width - NAME - _FIGURE, INK if flown else MUTE
-    canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, room=NAME - 20)
-    if flown:
-        canvas.marker("triangle", (x - 8, y), 6, NET)
+    (left, y), loss = place, values.loss(action)
+    x, track, colour = left + NAME, width - NAME - _FIGURE, _draw_name(canvas, action, values.flown, left, y)
     figure = texts.Q_BEST if loss == 0 else behind(loss)
     canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
     if track < _LEAST:
         return
-    canvas.bar((x, y - 1, track, _BAR), values.fraction(loss), NET if flown else mix(FAINT, NET, 0.45))
+    tone = NET if action == values.flown else mix(FAINT, NET, 0.45)
+    canvas.bar((x, y - 1, track, _BAR), values.fraction(loss), tone)
     if loss > SPAN:  # it lies beyond the left end of the scale
         canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
         canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
@@ -119,12 +118,30 @@ def _draw_row(canvas: Canvas, values: QValues, action: int, place: tuple[float, 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
     """Draw which action is flown, for a pilot without Q-values; `top` is the first baseline."""
-    for action, name in enumerate(ACTION_NAMES):
-        y, here = top + ROW * action, action == flown
-        canvas.text(texts.said(name), (left, y), size=SMALL, colour=INK if here else MUTE, room=NAME - 20)
-        if here:
-            canvas.marker("triangle", (left + NAME - 8, y - 4), 6, NET)
-            canvas.text(texts.DECISION_SCRIPTED_FLOWN, (left + NAME, y), size=SMALL, colour=MUTE)
+    for action in range(len(ACTION_NAMES)):
+        _draw_name(canvas, action, flown, left, top + ROW * action - 4)
+    canvas.text(texts.DECISION_SCRIPTED_FLOWN, (left + NAME, top + ROW * flown), size=SMALL, colour=MUTE)
+
+
+def draw_landings(
+    canvas: Canvas, lands: Sequence[bool | None], flown: int, left: float, top: float, width: float
+) -> None:
+    """Draw for each action whether the network then `lands`, None where that is not known yet; as `draw_q_values`."""
+    for action, after in enumerate(lands):
+        y = top + FIRST + ROW * action
+        colour = _draw_name(canvas, action, flown, left, y)
+        said, room = texts.LANDINGS[_LANDS[after]], width - NAME - 20
+        canvas.text(said, (left + width, y + 4), size=SMALL, colour=NET if after else colour, align="right", room=room)
+        canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_LANDING)
+
+
+def _draw_name(canvas: Canvas, action: int, flown: int, left: float, y: float) -> Colour:
+    """Draw an action's name, with a mark beside it if it is `flown`; return the colour of what is said of it."""
+    colour = INK if action == flown else MUTE
+    canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, room=NAME - 20)
+    if action == flown:
+        canvas.marker("triangle", (left + NAME - 8, y), 6, NET)
+    return colour
 
 
 def decision_words(decision: Decision) -> Sequence[str]:

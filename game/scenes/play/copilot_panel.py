@@ -12,8 +12,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import LINE, NET, SMALL
-from game.explain.landings import draw_landings
-from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
+from game.explain.q_values import HEIGHT, QValues, decision_words, draw_landings, draw_q_values
 from game.flight.choosers import Crew
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import SixFutures
