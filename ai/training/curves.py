@@ -9,8 +9,6 @@ import numpy as np
 
 from ai.agent.schedule import learning_rate
 from ai.environment import Doubles
-from ai.lander.environment import LIMITS
-from ai.lander.rewards import FEET_STEPS_PAID
 from ai.training.config import Config
 from ai.training.history import History, SettingChange
 
@@ -19,9 +17,6 @@ ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly 
 FALLEN: Final = 0.3  # share of flights fewer than before a change, from which that is to blame
 COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
 RATES: Final = ("learning_rate", "final_learning_rate")
-_FARTHEST: Final = 25.0  # metres from the pad, at the most
-_FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
-_FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
 _ENDS: Final = {"crashes": "crashed", "hovers": "timed_out", "leaves": "out_of_bounds"}  # columns, by captions
 _MOST: Final = 0.5  # share of flights that are most of them
@@ -131,27 +126,3 @@ def median(values: Doubles) -> float:
     """Return the median of the finite values; NaN without any."""
     values = _finite(values)
     return float(np.median(values)) if len(values) else float("nan")
-
-
-def runs_away(run: Curves) -> bool:
-    """Whether the mean Q-value is beyond twice what a flight could earn or lose, or the loss ten times what it was.
-
-    Both have where they are infinite; NaN means that one is not known.
-    """
-    loss, value = run.history["loss"], run.last("mean_q")
-    if np.isinf([loss[-1], run.history["mean_q"][-1]]).any():
-        return True
-    least, most = returns(run.config)
-    before = median(loss[-208:-8])
-    explodes = len(loss) >= 60 and before > 0 and run.last("loss") > 10 * before
-    return explodes or value < 2 * least or value > 2 * most
-
-
-def returns(config: Config) -> tuple[float, float]:
-    """Return the least and the most that a flight could earn, as the network sees it."""
-    weights = config.reward_weights
-    shaped = 10 * weights.distance * _FARTHEST + 10 * weights.speed * _FASTEST + weights.alignment
-    steady = weights.tilt + weights.engine + weights.switch + weights.time  # at every physics step
-    lost = min(0.0, steady) * _FLIGHT - abs(shaped) - abs(weights.terminal)
-    won = max(0.0, steady) * _FLIGHT + abs(shaped) + abs(weights.terminal) + abs(weights.feet) * FEET_STEPS_PAID
-    return config.reward_scale * lost, config.reward_scale * won

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ai.training.config import PRESETS, Config
-from ai.training.curves import Curves, caption, returns, runs_away
+from ai.training.curves import Curves, caption
 from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint
 from ai.training.history import Checkpoint, History, SettingChange
@@ -51,21 +51,6 @@ def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
     assert holding(later(0.9, **CRASHES)) == set(), "a run that landed is not said to crash still"
 
 
-def test_values_and_losses_that_run_away_are_seen_and_others_are_not():
-    for curve, ran in [
-        (later(0.97, loss=0.8), True),
-        (later(0.99, loss=float("inf")), True),
-        (later(0.9, mean_q=12.0), True),
-        (later(0.9, mean_q=-30.0), True),
-        (later(0.999, mean_q=float("inf")), True),
-        (later(0.97, loss=0.3), False),  # modern rises and falls by a factor of 3
-        (points(mean_q=2.9), False),
-        (points(loss=NAN, mean_q=NAN), False),  # not known, as when a run goes on
-    ]:
-        run = Curves(history(curve), MODERN)
-        assert runs_away(run) == ran
-
-
 def test_rules_hold_their_peace(subtests: pytest.Subtests):
     begins = {"success_rate": 0.0, "crashed": 0.6, "timed_out": 0.4, "epsilon": 0.9, "loss": 0.3, "mean_q": -0.5}
     for number, (curve, config, options) in enumerate([
@@ -91,15 +76,6 @@ def test_no_number_stops_a_rule():
         for when in (0.0, 0.5, 0.999):
             holding(later(when, **{column: NAN}))
         holding(points(**{column: NAN}), points=1)
-
-
-def test_what_a_flight_can_pay_follows_the_weights():
-    least, most = returns(MODERN)
-    assert least < -4.0  # hovering for the whole time, and a crash
-    assert 2.5 < most < 5.0
-    doubled = MODERN.changed(reward_scale=0.02)
-    assert returns(doubled) == pytest.approx((2 * least, 2 * most))
-    assert returns(sabotaged(MODERN, "no_shaping")) == pytest.approx((-1.2, 1.2))
 
 
 # Remedies
