@@ -1,4 +1,4 @@
-"""Every scene in a language that nobody speaks: all that is written is translated, and fits, at all sizes of text."""
+"""Every scene in a language that nobody speaks, and in German and Spanish: all is translated, and fits, in any size."""
 
 import json
 import os
@@ -10,11 +10,12 @@ from pathlib import Path
 import pygame
 import pytest
 
-from game.core import texts
+from game.core import catalogue, texts
 from tests.support import pseudo
 from tests.support.written import Note, Page, misplaced
 
 ROOT = Path(__file__).parents[2]
+WINDOWS = "800x600", "720x1280"  # beside the usual one; larger ones of its shape are laid out alike
 # What is the same in every language: units, and keys that are named by their letter or number.
 UNITS = {"m", "s", "ms", "min", "k", "M"}
 KEY = re.compile(r"[A-Z]|F\d+")
@@ -25,22 +26,20 @@ PATH = re.compile(r"/\S*")
 TINY = re.compile(r"\d+e[-−]\d+")  # a number: 5e-05
 
 
-@pytest.fixture(scope="module")
-def walk(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, str]]:
-    folder = tmp_path_factory.mktemp("locale")
-    pseudo.make(folder)
+def walked(language: str, folder: Path, *windows: str) -> dict[str, dict[str, str]]:
+    """Walk through all screens in a language; return what was seen, and what was misplaced, each with where."""
     done = subprocess.run(
-        [sys.executable, "-m", "tests.support.pseudo_walk", str(folder)],
+        [sys.executable, "-m", "tests.support.pseudo_walk", str(folder), *windows],
         cwd=ROOT,
-        env=os.environ | {"LANGUAGE": pseudo.CODE, "LANG": "en_US.UTF-8", "OMP_NUM_THREADS": "1"},
+        env=os.environ | {"LANGUAGE": language, "LANG": "en_US.UTF-8", "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
         check=False,
         timeout=1800,  # it takes a minute, and many on a busy machine
     )
     assert done.returncode == 0, done.stderr
-    walked: dict[str, dict[str, str]] = json.loads(done.stdout)
-    return walked
+    walk: dict[str, dict[str, str]] = json.loads(done.stdout)
+    return walk
 
 
 def english(text: str) -> set[str]:
@@ -50,11 +49,25 @@ def english(text: str) -> set[str]:
 
 
 @pytest.mark.slow
-def test_every_word_comes_from_the_catalogue_and_every_text_fits_and_meets_no_other(walk):
+def test_every_word_comes_from_the_catalogue_and_every_text_fits_and_meets_no_other(tmp_path: Path):
     """One test, so that no two processes take the same walk."""
+    pseudo.make(tmp_path)
+    walk = walked(pseudo.CODE, tmp_path)
     assert len(walk["seen"]) > 500
     assert not {text: place for text, place in walk["seen"].items() if english(text)}
     assert not walk["wrong"], "\n".join(map(str, walk["wrong"].items()))
+
+
+@pytest.mark.slow
+def test_no_text_of_a_language_is_misplaced_where_english_is_not(subtests: pytest.Subtests):
+    """Where English has too little room as well, the screen is to be mended, and not the translation."""
+    known = set(walked(catalogue.ENGLISH, catalogue.LOCALE, *WINDOWS)["wrong"].values())
+    for language in sorted({*catalogue.languages(catalogue.LOCALE)} - {catalogue.ENGLISH}):
+        with subtests.test(language=language):
+            walk = walked(language, catalogue.LOCALE, *WINDOWS)
+            assert len(walk["seen"]) > 500
+            wrong = {text: place for text, place in walk["wrong"].items() if place not in known}
+            assert not wrong, "\n".join(map(str, wrong.items()))
 
 
 def test_words_that_are_not_translated_are_found():

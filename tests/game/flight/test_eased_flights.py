@@ -1,7 +1,5 @@
-"""Flights under other rules, flown again bit for bit: shares of thrust, wider pads, no time limit and pace."""
+"""Flights under other rules, flown again bit for bit: shares of thrust, wider pads, no time limit."""
 
-from collections.abc import Callable
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,9 +14,8 @@ from game.flight import flight_file
 from game.flight.choosers import Shared
 from game.flight.flight import Flight
 from game.flight.flight_file import Record
-from game.flight.logbook import best, best_alone, describe
+from game.flight.logbook import describe
 from game.input.analogue import pushed
-from tests.support.driver import Driver
 from tests.support.flights import begun
 from tests.support.one_switch import one_switch
 
@@ -71,19 +68,3 @@ def test_a_slow_hand_with_one_switch_lands():
     """A fifth of a second late, five decisions a second, and nothing but the engine: the jets steer by themselves."""
     for seed in range(4):
         assert one_switch(begun(seed, easing=Easing(wider_pads=seed % 2 == 0))).outcome is Outcome.LANDED, seed
-
-
-Open = Callable[..., Driver]
-
-
-def test_only_flights_alone_and_from_anywhere_are_among_the_best():
-    flight = begun(3, ScriptedPilot())
-    flight.chooser.hand_over()
-    while not flight.over:
-        flight.step()
-    entry = replace(describe(flight, 1.0), alone=True, file="a.json", score=90)
-    slow = replace(entry, alone=False, barred="assists", score=99)
-    assert best([slow, entry]) == [entry]
-    others = [replace(entry, score=95, **kind) for kind in ({"course": "night"}, {"spawn": "rung_3"})]
-    assert best_alone([slow, entry, *others]) == 90
-    assert best_alone([]) == 0
