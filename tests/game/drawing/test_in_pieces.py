@@ -118,7 +118,7 @@ def test_what_lies_ahead_waits_for_what_is_seen(in_pieces: None):
 def test_the_window_may_change_its_size_while_its_land_is_painted(open_game: Open, context, in_pieces: None):
     save_settings(context)
     driver = open_game(MenuScene)
-    for size in ((700, 480), (640, 360)):
+    for size in ((700, 400), (640, 360)):
         driver.resize(size)
         assert not idle()
     assert max(costs(driver.app, idle)) <= MOST

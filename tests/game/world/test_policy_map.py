@@ -93,8 +93,7 @@ def test_a_button_and_the_mouse_choose_the_map(open_game: Open, context: Context
     driver.frames(2)
     driver.form.focus(driver.widget(texts.WATCH_MAP))
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
-    driver.frames(40)
     assert scene(driver).world.policy_map.on
-    assert scene(driver).world.policy_map.actions is not None
+    driver.wait(lambda: scene(driver).world.policy_map.actions is not None)
     driver.click(driver.widget(texts.WATCH_MAP)._places[0].center)
     assert not scene(driver).world.policy_map.on
