@@ -71,7 +71,7 @@ class Player(Driver):
         found: dict[int, list[str]] = {start: []}
         ahead = [start]
         for index in ahead:
-            for direction in ("down", "up", "right", "down", "left", "up"):
+            for direction in ("down", "up", "right", "left"):
                 if index < len(self.form.widgets):
                     self.form.focus(self.form.widgets[index])
                     self.lead_on(direction)

@@ -159,12 +159,14 @@ def opened(open_game: Callable[..., Driver], name: str, below: Make = MenuScene,
 
 
 def crashed(driver: Driver) -> None:
-    """Fall, and wait for the card."""
+    """Fall from low above the pad, and wait for the card."""
     driver.frames(3)
     driver.key(pygame.K_UP)
-    while not play(driver).flight.over:
-        driver.skip(10)
-    driver.skip(240)
+    env = play(driver).flight.env
+    x, y = env.pad[0].tolist()
+    env.place(np.ones(1, bool), np.array([[x, y + env.params.stand + 2.0, 0.0, -6.0, 0.0, 0.0]]))
+    while play(driver).ending.shown < 1:
+        driver.skip()
 
 
 def shared(driver: Driver) -> None:

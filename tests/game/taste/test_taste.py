@@ -39,15 +39,17 @@ def ask(driver: Driver) -> Driver:
     return driver
 
 
-@pytest.mark.parametrize(
-    ("key", "answer"), [(pygame.K_LEFT, FIRST), (pygame.K_RIGHT, SECOND), (pygame.K_DOWN, NEITHER)]
-)
-def test_a_key_answers_and_another_question_comes(taste, key, answer):
-    question = taste.top.pair.question
-    taste.key(key)
-    ask(taste)
-    assert taste.top.run.asked.answers == 1
-    assert taste.top.pair.question is not question
+def test_each_key_gives_its_answer_and_another_question_comes(taste, monkeypatch):
+    given: list[int] = []
+    answer = TasteScene.answer
+    monkeypatch.setattr(TasteScene, "answer", lambda scene, which: (given.append(which), answer(scene, which))[1])
+    for count, key in enumerate((pygame.K_LEFT, pygame.K_RIGHT, pygame.K_DOWN), 1):
+        question = taste.top.pair.question
+        taste.key(key)
+        ask(taste)
+        assert taste.top.run.asked.answers == count
+        assert taste.top.pair.question is not question
+    assert given == [FIRST, SECOND, NEITHER]
 
 
 def test_a_click_on_a_flight_likes_it_better_and_backspace_takes_that_back(taste):

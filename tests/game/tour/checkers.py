@@ -135,10 +135,9 @@ def changed_by_drawing(driver: Driver) -> set[str]:
 
 def drawing_changes_nothing_but_pixels(visit: Visit) -> None:
     driver, scenes = visit.driver, visit.driver.app.scenes
-    assert not changed_by_drawing(driver)
     driver.frames(20)
     scenes.update()  # and before anybody has drawn what that did
-    assert not changed_by_drawing(driver), "after some frames"
+    assert not changed_by_drawing(driver)
     driver.app.canvas.surface.fill((0, 0, 0))
     pictures = []
     for _ in range(2):
