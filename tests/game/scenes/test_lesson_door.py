@@ -12,7 +12,7 @@ from tests.support.small import learn, pause, toggle
 
 
 def start(driver: Driver) -> None:
-    learn(driver)
+    learn(driver, 5)
     pause(driver)
     driver.frames(30)
 
