@@ -12,7 +12,7 @@ from tests.support.small import learn, pause, toggle
 
 
 def start(driver: Driver) -> None:
-    learn(driver, 5)
+    learn(driver, 6)
     pause(driver)
     driver.frames(30)
 
