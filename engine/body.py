@@ -25,8 +25,13 @@ class _Part:
     def __set_name__(self, owner: type[Body], name: str) -> None:
         self._name = name
 
+    def of(self, body: Body) -> Array:
+        """Return the part to write into, with a row for each world."""
+        part: Array = getattr(body.world.state, self._table)[:, body.index, self._part]
+        return part
+
     def __get__(self, body: Body, owner: type[Body]) -> Array:
-        return _read_only(getattr(body.world.state, self._table)[:, body.index, self._part])
+        return _read_only(self.of(body))
 
     def __set__(self, body: Body, value: object) -> None:
         values: dict[str, Any] = {self._name: value}
@@ -114,19 +119,11 @@ class Body:
         """
         worlds = None if mask is None else np.asarray(mask, dtype=bool)
         rows = slice(None) if worlds is None else worlds
-        pose, motion = self.world.state.pose, self.world.state.velocity
-        given = [
-            (table, part, np.broadcast_to(finite(name, value), table[rows, self.index, part].shape))
-            for table, part, name, value in (
-                (pose, slice(2), "position", position),
-                (pose, 2, "angle", angle),
-                (motion, slice(2), "velocity", velocity),
-                (motion, 2, "angular velocity", angular_velocity),
-            )
-            if value is not None
-        ]
-        for table, part, value in given:
-            table[rows, self.index, part] = value
+        values = {"position": position, "angle": angle, "velocity": velocity, "angular_velocity": angular_velocity}
+        parts = {name: vars(Body)[name].of(self) for name, value in values.items() if value is not None}
+        given = {name: np.broadcast_to(finite(name, values[name]), part[rows].shape) for name, part in parts.items()}
+        for name, part in parts.items():
+            part[rows] = given[name]
         if self.static or position is not None or angle is not None:
             self.world.moved(self.index, worlds)
 

@@ -197,12 +197,6 @@ class World:
         slept = self._rest.contacts_of_sleepers(self.contacts)
         self.contacts = self._remembered = contacts.with_others(slept) if contacts else slept
 
-    def _forget(self, bodies: Bools) -> None:
-        """Begin the next step without the impulses of some bodies, (batch, bodies)."""
-        if self._remembered:
-            gone = bodies[self._remembered.world[:, None], self._remembered.body].any(axis=1)
-            self._remembered = self._remembered.take(np.flatnonzero(~gone))
-
     def _prepare(self) -> None:
         """Bring up to date what is made of bodies and their parameters, if any has been added or replaced."""
         if self._prepared is self.params:
@@ -250,9 +244,11 @@ class World:
         self.state.refresh_rotation(slice(body, body + 1))
         if not self.params.dynamic[body]:
             self.forget_boxes(slice(body, body + 1))
-        gone = np.zeros(self.state.active.shape, dtype=bool)
-        gone[slice(None) if worlds is None else worlds, body] = True
-        self._forget(gone)
+        if self._remembered:
+            kept = (self._remembered.body != body).all(axis=1)
+            if worlds is not None:
+                kept |= ~worlds[self._remembered.world]
+            self._remembered = self._remembered.take(np.flatnonzero(kept))
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Take note that static bodies were put elsewhere, or were given a velocity, by writing into `state`."""

@@ -13,7 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.copilot.futures import DECISION_STEPS, Future, Futures, Here, Known, Lookahead
 from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
-from ai.copilot.intent import Intent, in_question
+from ai.copilot.intent import DOUBT, Intent
 from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.moment import Moment
@@ -49,12 +49,6 @@ class SharedDecision:
     asked: tuple[Push, ...] = ()  # (n) what the pilot pushes
     known: tuple[Known, ...] | None = None  # (n) what comes of each push that was looked at
     held: Bools | None = None  # (n,) whether a plan is held now, so that nobody can crash the flight
-
-
-def guardian_margin(assist: Any) -> Any:
-    """Return by how many points of reward the guardian must be better than the pilot, for assist (n,), 0 to 1."""
-    with np.errstate(divide="ignore"):
-        return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
 
 
 class CoPilot:
@@ -199,7 +193,7 @@ class CoPilot:
             return np.ones((slots, 1)), values
         likely = self._intent.watch(values, pilot)
         likeliest = (likely - 1e-6 * away).argmax(axis=1)[:, None]  # among equals, the nearest
-        open_ = in_question(likely) & (pilot != COAST)[:, None]
+        open_ = (likely >= DOUBT * likely.max(axis=1, keepdims=True)) & (pilot != COAST)[:, None]
         pad = np.where(open_, np.arange(pads), likeliest)
         return likely, values[np.arange(slots)[:, None], pad]
 
@@ -320,7 +314,9 @@ def _guard(values: Floats, pilot: Ints, assist: Floats, reward_scale: float) -> 
     gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
     best = gain.argmax(axis=1)
     feasible = np.zeros(gain.shape, dtype=bool)
-    feasible[rows, pilot] = gain[rows, best] <= guardian_margin(assist) * reward_scale
+    with np.errstate(divide="ignore"):
+        margin = GUARDIAN_MARGIN * (1.0 - assist) / assist
+    feasible[rows, pilot] = gain[rows, best] <= margin * reward_scale
     return best, _certain(values, pilot, best, feasible)
 
 

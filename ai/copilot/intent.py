@@ -12,7 +12,7 @@ from ai.lander.pilots import COAST
 _TEMPER: Final = 2.0  # temperature of the Boltzmann model of the pilot, in points of reward
 _SLIP: Final = 0.3  # share of actions that are slips of the hand, and no evidence
 _MEMORY: Final = 0.98  # exponent on old evidence at each decision: people change their minds
-_DOUBT: Final = 0.1  # pads less likely than this share of the likeliest are ruled out
+DOUBT: Final = 0.1  # pads less likely than this share of the likeliest are ruled out
 
 
 class Intent:
@@ -54,9 +54,3 @@ class Intent:
         if self.chances.size:
             self.chances = self.chances.copy()
             self.chances[slice(None) if mask is None else mask] = 1.0 / self.chances.shape[1]
-
-
-def in_question(likely: Doubles) -> Bools:
-    """Return which pads may still be meant, (n, pads), by chances (n, pads)."""
-    open_: Bools = likely >= _DOUBT * likely.max(axis=1, keepdims=True)
-    return open_

@@ -168,16 +168,6 @@ def test_the_flat_vector_is_the_layers_and_a_later_layer_joins_it():
     assert np.shares_memory(network.layers[-1].weights, network.values)
 
 
-def test_a_copy_is_independent():
-    network = small_network()
-    twin = network.copy()
-    np.testing.assert_array_equal(twin.values, network.values)
-    expected = twin.predict(XOR_X)
-    network.train(XOR_X, XOR_Y)
-    np.testing.assert_array_equal(twin.predict(XOR_X), expected)
-    assert not np.array_equal(network.predict(XOR_X), expected)
-
-
 def test_a_batch_of_one_is_predicted_as_among_others_whatever_became_of_the_network():
     rng = np.random.default_rng(3)
     x = rng.normal(size=(4, 5))

@@ -35,10 +35,10 @@ def network():
 COPIES = {"deepcopy": copy.deepcopy, "pickle": lambda what: pickle.loads(pickle.dumps(what))}
 
 
-@pytest.mark.parametrize("way", COPIES)
-def test_a_copied_network_is_equal_and_learns_apart(way):
+@pytest.mark.parametrize("copied", [*COPIES.values(), NeuralNetwork.copy], ids=[*COPIES, "copy"])
+def test_a_copied_network_is_equal_and_learns_apart(copied):
     first = network()
-    twin = COPIES[way](first)
+    twin = copied(first)
     before = first.predict(X)
     assert np.array_equal(twin.predict(X), before)
     assert (twin.cost.name, dict(twin.cost.options)) == ("huber", {"delta": 0.7})
