@@ -138,7 +138,8 @@ class Switch:
                 self.press()
                 return
             self.game.skip(DWELL)
-        raise AssertionError(f"{words} is never marked")
+        labels = [stop.widget.label for stop in app.scan.stops(self.game.top, app.canvas)]
+        raise AssertionError(f"{words} is never marked in {self.game.top_name}, among {labels}, at {app.scan.index}")
 
 
 @pytest.mark.slow
