@@ -165,9 +165,9 @@ class Bindings:
         """Return the command a key gives, if any; letters that nothing is bound to move in menus by their `place`."""
         return self._commands.get(code) or self.device.spare.get(code if place is None else place)
 
-    def uses(self, code: int) -> bool:
-        """Whether a key is bound to anything."""
-        return any(code in codes for codes in self.table.values())
+    def owner(self, code: int) -> Meaning | None:
+        """Return the meaning that a key is bound to, if any."""
+        return next((meaning for meaning, codes in self.table.items() if code in codes), None)
 
     def may(self, meaning: Meaning, code: int) -> bool:
         """Whether a key may be bound to that meaning."""
@@ -175,10 +175,6 @@ class Bindings:
         if code in device.standard[meaning] or (isinstance(meaning, Held) and code in device.engines):
             return True
         return code not in device.taken and not any(code in codes for codes in device.fixed.values())
-
-    def only_key_of(self, code: int) -> Meaning | None:
-        """Return the meaning that has no other key than this."""
-        return next((meaning for meaning, codes in self.table.items() if codes == (code,)), None)
 
     def bind(self, meaning: Meaning, code: int) -> None:
         """Bind a key to a meaning, and unbind it from any other."""

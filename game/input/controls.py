@@ -73,7 +73,7 @@ def _is_chord(event: pygame.event.Event, keys: Bindings) -> bool:
     if any(event.key in codes for codes in _MODIFIERS.values()):
         return False
     held = [codes for mask, codes in _MODIFIERS.items() if getattr(event, "mod", 0) & mask]
-    return any(not any(map(keys.uses, codes)) for codes in held)
+    return any(not any(map(keys.owner, codes)) for codes in held)
 
 
 def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Command | None:

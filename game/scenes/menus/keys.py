@@ -70,17 +70,19 @@ class BindingCell(RowWidget):
         return place_of(event) if isinstance(self._meaning, Held) else code_of(event)
 
     def _bind(self, code: int) -> None:
-        what = self._word(code)
+        what, table, owner = self._word(code), self._bindings.table, self._bindings.owner(code)
+        loser = owner if owner is not self._meaning else None
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
-        elif (owner := self._bindings.only_key_of(code)) and owner is not self._meaning:
-            self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[owner.name]))
+        elif loser and table[loser] == (code,):
+            self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[loser.name]))
         else:
             self.stop()
-            before = self._bindings.table[self._meaning]
-            gone = _BETWEEN.join(self._word(other) for other in before if other != code)
+            gone = _BETWEEN.join(self._word(other) for other in table[self._meaning] if other != code)
+            said = [texts.BINDINGS_NOW.format(key=what, gone=gone)] if gone else []
+            said += [texts.BINDINGS_TAKEN.format(key=what, other=texts.BINDINGS[loser.name])] if loser else []
             self._bindings.bind(self._meaning, code)
-            self._on_change(texts.BINDINGS_NOW.format(key=what, gone=gone) if gone else "")
+            self._on_change(" ".join(said))
 
     def _word(self, code: int) -> str:
         return self._controls.gamepad_sign(code) if self._for_pads else self._controls.key_word(self._meaning, code)

@@ -52,6 +52,15 @@ def test_a_key_is_changed_kept_and_named_at_once(table: Driver):
     assert said(table) == texts.BINDINGS_NOW.format(key="F", gone="↑  ·  Space  ·  W")
 
 
+def test_a_key_that_is_taken_from_another_is_named_with_it(table: Driver):
+    table.keys(pygame.K_RETURN, pygame.K_a)
+    now = texts.BINDINGS_NOW.format(key="A", gone="↑  ·  Space  ·  W")
+    assert said(table) == f"{now} {texts.BINDINGS_TAKEN.format(key='A', other=texts.BINDINGS['LEFT'])}"
+    assert saved(table, "keys") == {"main": ["a"], "left": ["left"]}
+    table.keys(pygame.K_RETURN, pygame.K_a)
+    assert said(table) == "", "it had that already"
+
+
 def test_what_menus_need_cannot_be_taken(table: Driver):
     begin_with(table, "RETRY")
     table.key(pygame.K_RETURN)

@@ -118,8 +118,8 @@ def test_a_key_is_taken_from_what_had_it_and_goes_back():
     keys.bind(Command.CHOICES, pygame.K_n)
     assert keys.command(pygame.K_n) is Command.CHOICES
     assert keys.codes(Command.NEXT) == (pygame.K_PAGEDOWN,)
-    assert keys.only_key_of(pygame.K_PAGEDOWN) is Command.NEXT
-    assert keys.only_key_of(pygame.K_w) is keys.only_key_of(pygame.K_c) is None
+    assert keys.owner(pygame.K_PAGEDOWN) is Command.NEXT
+    assert keys.owner(pygame.K_c) is None
     keys.reset()
     assert keys.table == KEYS
     assert keys.to_dict() == {}
