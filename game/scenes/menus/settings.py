@@ -16,6 +16,7 @@ from game.flight.progress import put_away
 from game.input.controls import Command
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
+from game.ui.hints import Hint
 from game.ui.panel_scene import PanelScene
 from game.ui.rows import percent
 
@@ -73,7 +74,9 @@ class SettingsScene(PanelScene):
         return self.context.settings.full_screen, self.context.settings.muted
 
     def actions(self) -> Table:
-        return [self.form.changes, self.form.goes_back(texts.HINT_BACK)]
+        groups, arrows = self.form.widgets[0], self.context.controls.arrows_aside
+        change = Hint(arrows, texts.HINT_CHOOSE) if self.form.focused is groups else self.form.changes
+        return [change, self.form.goes_back(texts.HINT_BACK)]
 
     def _show(self, number: int) -> None:
         self.group = GROUPS_OF_SETTINGS[number]

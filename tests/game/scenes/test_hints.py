@@ -24,6 +24,15 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     assert settings.form.widgets[1]._aside.startswith("F9 ")
 
 
+def test_what_changes_the_group_of_settings_is_named_as_it_is(open_game):
+    driver = open_game(SCREENS["SettingsScene"])
+    driver.frames(2)
+    named = {hint.meaning: hint.key for hint in driver.top.hints}
+    assert named[texts.HINT_CHOOSE] == driver.app.context.controls.arrows_aside
+    driver.key(pygame.K_DOWN)
+    assert {hint.meaning: hint.key for hint in driver.top.hints}[texts.HINT_CHANGE] == "Enter"
+
+
 def test_full_screen_is_switched_by_its_key_and_by_a_click(open_game, context: Context):
     driver = open_game(SCREENS["MenuScene"])
     driver.frames(2)
