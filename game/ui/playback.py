@@ -42,12 +42,7 @@ class Playback:
         return self._row
 
     def actions(
-        self,
-        step_hint: str,
-        *,
-        stop: Callable[[], None] | None = None,
-        gamepad: Command = Command.HANDOVER,
-        resting: bool = False,
+        self, step_hint: str, *, stop: Callable[[], None] | None = None, gamepad: Command = Command.HANDOVER
     ) -> list[Action]:
         """Return the actions: stop or go, and step, with hints; slower and faster without.
 
@@ -55,10 +50,9 @@ class Playback:
             step_hint: what a step is called.
             stop: stops or goes, where that takes more than `toggle`.
             gamepad: command that stops or goes from a gamepad.
-            resting: whether time stands still for another reason than being stopped.
 
         """
-        go = texts.HINT_GO if self.stopped or resting else texts.HINT_STOP
+        go = texts.HINT_GO if self.stopped else texts.HINT_STOP
         return [
             Action(pygame.K_SPACE, stop or self.toggle, go, gamepad=gamepad),
             Action(Command.STEP, self.step, step_hint),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Hashable
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -80,9 +82,9 @@ class ReplayScene(WorldScene):
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def actions(self) -> Table:
-        stop, step, *speeds = self.playback.actions(
-            texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
-        )
+        step_hint = "" if self.ended else texts.HINT_STEP
+        stop, step, *speeds = self.playback.actions(step_hint, stop=self._stop_or_go, gamepad=Command.CONFIRM)
+        stop = replace(stop, hint=texts.CARD_WATCH) if self.ended else stop
         on_strip = self.form.focused is self._strip
         if self.context.controls.gamepad_in_use and not on_strip:  # its A presses what is in focus
             stop = self.form.confirms(texts.HINT_CHOOSE)
@@ -147,6 +149,9 @@ class ReplayScene(WorldScene):
 
     # Rows
 
+    def state(self) -> Hashable:
+        return super().state(), self.flight_replay.flight.over
+
     def describe(self) -> None:
         """Add which flight it is, and its moment; the read-outs, the strip, and what can be done with the flight."""
         head, foot = self.head, self.foot
@@ -155,13 +160,13 @@ class ReplayScene(WorldScene):
         head.add(self._write_moment)
         foot.add(lambda cursor: readouts.write_readouts(cursor, {name: self._readouts[name] for name in PILOT}))
         self._strip = foot.widget(Timeline(self.record.recording, self.go_to, self._stop_or_go))
+        self._strip.at = self.flight_replay.at
         more = self.context.settings.is_open(_OPEN)
         race = texts.FRIEND_ANSWER if self.friend else texts.LOGBOOK_RACE
         self._export_word = ButtonRow(self._export_words, self._begin_or_stop_export, size=SMALL)
-        rows: list[ButtonRow | ChoiceRow] = [
-            ButtonRow(texts.REPLAY_TAKE_OVER, self._take_over, size=SMALL),
-            ButtonRow(race, self._race, size=SMALL),
-        ]
+        rows: list[ButtonRow | ChoiceRow] = [ButtonRow(race, self._race, size=SMALL)]
+        if not self.flight_replay.flight.over:
+            rows.insert(0, ButtonRow(texts.REPLAY_TAKE_OVER, self._take_over, size=SMALL))
         if more:
             rows += [ButtonRow(texts.CODE_COPY, self._copy, size=SMALL), self._export_word]
             rows.insert(0, self.playback.choice())  # or the arrow to the left of "Less" would go no farther

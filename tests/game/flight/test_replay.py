@@ -154,6 +154,24 @@ def test_it_plays_stops_steps_winds_slows_and_begins_anew(replay: Driver):
     assert 0 < at() < 10
 
 
+def test_at_the_end_only_what_can_be_done_is_offered(replay: Driver):
+    def offers() -> tuple[bool, set[str]]:
+        replay.frames(2)
+        hints = replay.hints().keys() & {texts.HINT_GO, texts.HINT_STOP, texts.HINT_STEP, texts.CARD_WATCH}
+        return texts.REPLAY_TAKE_OVER in {widget.label for widget in replay.form.widgets}, hints
+
+    assert offers() == (True, {texts.HINT_STOP, texts.HINT_STEP})
+    replay.wait(lambda: scene(replay).flight_replay.complete)
+    scene(replay).go_to(10_000)
+    assert offers() == (False, {texts.CARD_WATCH})
+    replay.key(pygame.K_LEFT)
+    assert scene(replay).flight_replay.at == scene(replay).flight_replay.length - 4, "six back, and two frames on"
+    assert offers()[0]
+    replay.wait(lambda: scene(replay).ended)
+    replay.click(replay.hints()[texts.CARD_WATCH])
+    assert offers() == (True, {texts.HINT_STOP, texts.HINT_STEP})
+
+
 @pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
 def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
     context.settings_file.save(replace(context.settings, reduced_motion=reduced))
