@@ -16,7 +16,7 @@ from ai.nn import SGD, Array, CostFunctions, DivergenceError, FullyConnectedLaye
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, Colour
+from game.drawing.tokens import FAINT, HUMAN, LABEL, MUTE, NET, SMALL, Colour
 from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.ui.context import Context
@@ -158,6 +158,10 @@ class DownhillChapter(Chapter):
     def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
         _draw_way(canvas, box, self._curve, NET)
         trail = list(zip(self.model.trail, self.model.costs, strict=True))
+        with canvas.clipped(box):  # each step across to the next weight, and then up or down to its cost
+            for here, there in pairwise(trail):
+                for start, end in pairwise(_on(box, point) for point in (here, (there[0], here[1]), there)):
+                    canvas.line(start, end, FAINT)
         for point in filter(_seen, trail):
             canvas.dot(_on(box, point), 2.5, HUMAN, 0.7)
         (weight, cost), slope = trail[-1], self.model.slope
