@@ -95,9 +95,9 @@ class MemoryChapter(RunsChapter):
                 canvas.text(words, (area.right - 10, area.top + 20), size=SMALL, align="right", tabular=True)
 
     def _draw_wall(self, canvas: Canvas, box: pygame.FRect, state: SmallState | None) -> None:
-        """Draw the cells that are held, light those from which was just drawn, and mark where today begins."""
+        """Draw the cells that are held, light those from which the latest step drew, and mark where today begins."""
         oldest, newest = (state.memory.oldest, state.memory.newest) if state else (0, 0)
-        drawn = set((state.memory.drawn // _EACH).tolist()) if state else set()
+        drawn = set((state.memory.drawn[-SMALL_RUN.batch_size :] // _EACH).tolist()) if state else set()
         gone, kept, lit = mix(NIGHT0, NIGHT1, 0.5), mix(NIGHT1, NET, 0.3), mix(NIGHT1, NET, 0.9)
         wide, high = box.width / _COLUMNS, box.height / _ROWS
         for cell in range(_COLUMNS * _ROWS):
