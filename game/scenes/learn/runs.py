@@ -188,6 +188,9 @@ class DuelChapter(RunsChapter):
             if state:
                 heights = np.clip(self.history(run, self.quantity) / top, 0.0, 1.0)
                 draw_curve(canvas, chart, heights, colour, self.LENGTH)
+                if (getattr(state, self.quantity) or 0.0) > top:  # off the chart
+                    at = chart.left + chart.width * (len(self.states) - 1) / self.LENGTH
+                    canvas.marker("triangle", (at, chart.top), 10, colour)
                 canvas.text(self.caption(state), (left, sky.bottom + 20), size=SMALL, tabular=True, room=half)
 
 
@@ -235,7 +238,8 @@ class TargetChapter(DuelChapter):
 
     def why(self) -> str:
         (usual, other), (least, peak) = map(percent, self.landed), map(self.figure, self.peaks)
-        return texts.LEARN_TARGET_WHY.format(peak=peak, least=least, usual=usual, other=other)
+        done = self.states[-1][0].decisions  # the values go on while this stands there
+        return texts.LEARN_TARGET_WHY.format(done=done, peak=peak, least=least, usual=usual, other=other)
 
     def caption(self, state: SmallState) -> str:
         return texts.LEARN_TARGET_EXPECTS.format(points=self.figure(state.value))

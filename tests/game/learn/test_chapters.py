@@ -373,6 +373,7 @@ def test_two_agents_learn_and_a_guess_gets_its_verdict_from_this_very_run(
     left, right = (state.landed or 0.0 for state in chapter.states[-1])
     assert {percent(left), percent(right)} <= set(_percents(chapter.why()))
     if kind is TargetChapter:
+        assert f"first {kind.LENGTH} decisions" in chapter.why(), "of which moment its figures are"
         assert (chapter.verdict() == 2) is (chapter.peaks[1] > 300.0)
         monkeypatch.setattr(TargetChapter, "peaks", (0.0, 400.0))
         run(chapter, 0)

@@ -12,8 +12,21 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.learn import pay
 from game.scenes.learn.choice import MOMENTS
+from game.scenes.learn.memory import KEPT
 from game.scenes.learn.pay import PAYS
+from game.scenes.learn.plane import examples
 from game.scenes.learn.runs import BOUND, DARING, PAY, RIGHT
+
+
+def test_the_best_line_gets_three_quarters_of_chapter_2_right():
+    points, targets = examples(0)
+    # Every order in which a line can pass the points lies between two directions in which two of them are level.
+    apart = (points[:, None] - points)[np.triu_indices(len(points), 1)].astype(float)
+    level = np.sort(np.arctan2(apart[:, 0], -apart[:, 1]) % np.pi)
+    directions = (level + np.append(level[1:], level[0] + np.pi)) / 2
+    along = points @ np.stack([np.cos(directions), np.sin(directions)])
+    passed = np.cumsum(targets[np.argsort(along, axis=0), 0], axis=0)  # half of all are of either kind
+    assert np.abs(passed).max() + len(points) / 2 == 0.75 * len(points)
 
 
 def test_no_flight_can_score_more_than_the_bound():
@@ -50,6 +63,8 @@ def test_modern_is_what_chapters_5_and_7_say():
     same = ("batch_size", "n_step", "target_judges", "double", "hidden", "layer_normalisation", "discount")
     assert [getattr(paid, name) for name in same] == [getattr(modern, name) for name in same]
     assert f"{BOUND:g}" in texts.LEARN_TARGET_WHY
+    assert f"latest {KEPT[1]}" in texts.LEARN["memory"]["task"]
+    assert f"draws {SMALL_RUN.batch_size} " in texts.LEARN["memory"]["lead"]
 
 
 def test_values_can_run_away_without_a_target_network_and_do_not_with_it_or_with_normalised_layers():
