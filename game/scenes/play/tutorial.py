@@ -33,6 +33,7 @@ _WHY_SHOWN: Final = 240  # steps in flight that the reason for a restart stays o
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
 _LEAN: Final = 0.15  # rad
 _UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
+_STOP: Final = 0.5  # seconds before the craft is upright, from which on its turn is to be stopped
 _SLOW, _RISING = 1.0, 0.3  # m/s down that are slow, and up from which on the craft rises instead of braking
 NETWORK, COPILOT = "network", "copilot"
 
@@ -85,7 +86,7 @@ class Tutorial(Challenge):
     def __init__(self) -> None:
         super().__init__(kept=False, again=True)
         self._lessons = list(LESSONS)
-        self.flown = False
+        self.flown, self._side = False, 1.0  # to which it leans where a lesson restarts: left, or as the player did
         self._begin_lesson(0)
 
     @property
@@ -113,7 +114,7 @@ class Tutorial(Challenge):
 
     def _place(self, flight: Flight[Any]) -> None:
         height, sinks, angle, aside = self.lesson.start
-        flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, angle, 0.0]]))
+        flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, self._side * angle, 0.0]]))
         flight.observation = flight.env.observe()
         flight.rest()
 
@@ -158,7 +159,7 @@ class Tutorial(Challenge):
         self._done_for = self._done_for + 1 if self._does(flight) else 0
         if self._done_for < (1 if flight.over else self.lesson.steps):
             return ""
-        self.praise, self._why = _PRAISE, ""
+        self.praise, self._why, self._side = _PRAISE, "", np.copysign(1.0, turned(flight.env, 0.0))
         self.flown |= self.lesson.name == "land"
         if self._number == len(self._lessons) - 1:
             self._end()
@@ -243,8 +244,10 @@ class Tutorial(Challenge):
             return texts.TUTORIAL_TOO_HIGH
         if name != "lean" and abs(float(env.position[0, 0])) > _SIDEWAYS:
             return texts.TUTORIAL_AWAY
-        if name == "upright" and abs(turned(env)) < _UPRIGHT[0]:
-            return texts.TUTORIAL_STANDS
+        if name == "upright" and _stands_upright(flight):
+            return texts.TUTORIAL_GOOD[name]
+        if name == "upright" and turned(env, 0.0) * turned(env) < 0:  # it is turning back
+            return texts.TUTORIAL_TURNS if turned(env, 0.0) * turned(env, _STOP) > 0 else then
         return texts.TUTORIAL_RISES if name == "brake" and env.velocity[0, 1] > _RISING else usual
 
     @property

@@ -51,9 +51,9 @@ def sentence(flight: Flight[Crew], credit: Credit, changed: str, controls: Contr
     return words, urgency in (_AT_ONCE, _WARNED)
 
 
-def turned(env: LanderEnv) -> float:
+def turned(env: LanderEnv, ahead: float = _AHEAD) -> float:
     """Return the predicted angle of the craft, counter-clockwise in rad, far enough ahead to stop a turn in time."""
-    return float(env.angle[0] + _AHEAD * env.angular_velocity[0])
+    return math.remainder(env.angle[0], math.tau) + ahead * float(env.angular_velocity[0])
 
 
 def falls_too_fast(env: LanderEnv) -> bool:

@@ -1,5 +1,6 @@
 """The first flight: its lessons, and what it says, which a reader does to the letter, with every device there is."""
 
+import math
 import re
 from collections.abc import Callable, Iterator
 
@@ -41,12 +42,12 @@ def tutorial(driver: Driver) -> Tutorial:
 
 
 LEFT, MAIN, RIGHT = "left", "main", "right"
-MARKED = ("TOO_FAST", "TOO_HIGH", "TURN_FIRST", "AWAY", "STANDS", "RISES", "LET_GO", "AGAIN", "READY")
+MARKED = ("TOO_FAST", "TOO_HIGH", "TURN_FIRST", "AWAY", "TURNS", "RISES", "LET_GO", "AGAIN", "READY")
 LINES = texts.TUTORIAL | {name: (getattr(texts, f"TUTORIAL_{name}"),) for name in MARKED}
 SENTENCES = [
-    (name, re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(line))))
+    (name + "'" * number, re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(line))))
     for name, lines in LINES.items()
-    for line in lines
+    for number, line in enumerate(lines)
     if line
 ]
 
@@ -105,8 +106,10 @@ class Reader:
                 return {MAIN} if env.velocity[0, 1] < -0.8 else set()
             case "lean":
                 return {LEFT}
-            case "upright" | "TURN_FIRST":
+            case "TURN_FIRST":
                 return {self.side(keys["other"])}
+            case "upright" | "upright'":  # a tap is a tenth of a second
+                return {self.side(keys["other"])} if len(self.read) % 18 < 6 else set()
             case "AWAY":
                 side = self.side(keys["inward"])
                 leans = env.angle[0] * (1 if side == LEFT else -1)
@@ -135,7 +138,7 @@ class Reader:
         self.read.append(self.sentence())
         name, keys = self.read[max(0, len(self.read) - 1 - self.late)]
         self.hold(self.asked(name, keys))
-        if name == "hand_over" and len(self.read) % 40 == 0:
+        if name.startswith("hand_over") and len(self.read) % 40 == 0:
             self.press_hand_over()
         self.driver.skip()
 
@@ -301,6 +304,42 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
     assert challenge.sentence(flight, controls).startswith(f"{left} or {right} ")
     driver.move((640, 360))
     assert " or " not in challenge.sentence(flight, controls).split(".")[0]
+
+
+@pytest.mark.parametrize("late", [0, 18])
+@pytest.mark.parametrize(("angle", "spin"), [(-0.3, 0.0), (-0.6, -0.4), (0.5, -0.9), (6.6, 0.0)])
+def test_who_is_told_to_stand_upright_is_told_what_is_seen(open_game: Open, angle: float, spin: float, late: int):
+    pupil = Reader(at_lesson(open_game, "upright"), "keys", late)
+    env = play(pupil.driver).flight.env
+    pupil.follow()
+    place(env, 0.0, 20.0, 0.0, 2.0, angle, spin)
+    said = []
+    while pupil.challenge.lesson.name == "upright" and not pupil.challenge.praise:
+        leans, turns = math.sin(env.angle[0]), float(env.angular_velocity[0])
+        pupil.follow()
+        name, keys = pupil.read[-1]
+        said += [name] if name not in said[-1:] else []
+        if name == "upright":
+            assert pupil.side(keys["other"]) == (RIGHT if leans > 0 else LEFT), "against the tilt that is shown"
+        elif name == "upright'":
+            assert pupil.side(keys["other"]) == (RIGHT if turns > 0 else LEFT), "against the turn"
+        else:
+            assert name == "praise" or (name == "TURNS" and leans * turns < 0), "it does turn back"
+        assert len(pupil.read) < 300
+    assert len(said) <= 8, said  # not to and fro
+
+
+def test_a_lesson_that_restarts_leans_as_the_player_did(open_game: Open):
+    for lean in (-0.3, 0.3):
+        driver = at_lesson(open_game, "lean")
+        lessons, flight = tutorial(driver), play(driver).flight
+        driver.key(pygame.K_LEFT)
+        place(flight.env, 0.0, 14.0, 0.0, 0.0, lean, 0.0)
+        while lessons.lesson.name == "lean":
+            driver.skip()
+        driver.key(pygame.K_r)
+        assert play(driver).flight is not flight
+        assert play(driver).flight.env.angle[0] == lean
 
 
 @pytest.mark.parametrize("device", ["pad", "mouse"])
