@@ -134,7 +134,7 @@ class FlownFlight:
         """Change the network to hand over to, unless the player must fly alone."""
         self.network = network
         if not self.credit.alone:
-            self._policy = network.policy
+            self._policy, self.futures = network.policy, None
             self.flight.chooser.change_network(network.policy)
             self.path_preview.ask(self._policy if self.challenge.rules.free else None)
 
@@ -149,6 +149,8 @@ class FlownFlight:
         self.pace.rate = self._settings.pace
         if self._waits(asked):
             self._help()
+            if self._settings.show_thinking:
+                self.think(_THINKS)
             if guard := self.flight.chooser.guard:
                 guard.hang(self.flight, asked)
             self.path_preview.follow(waiting=True)
@@ -316,14 +318,13 @@ class FlownFlight:
 
     @property
     def thinks(self) -> bool:
-        """Whether what the network thinks is shown in flight."""
-        flies = not (self.waiting or self.flight.over)
-        return self._settings.show_thinking and self.copilot_panel.shown and flies
+        """Whether what the network thinks is shown: in flight, and of a craft that waits."""
+        return self._settings.show_thinking and self.copilot_panel.shown and not self.flight.over
 
     @property
     def panel_stands(self) -> bool:
-        """Whether that has a panel beside the flight, too."""
-        return self.thinks and self.copilot_panel.fits(self.context.reading())
+        """Whether that has a panel beside the flight, too; a craft that waits has words there."""
+        return self.thinks and not self.waiting and self.copilot_panel.fits(self.context.reading())
 
     def draw(self, canvas: Canvas, alpha: float, head: Head, *, whole: bool, low: float = 0.0) -> None:
         """Draw the world, the craft, the read-outs and the words; `whole` is for all that can be known of it.
@@ -359,7 +360,8 @@ class FlownFlight:
         if low < foot:
             draw_flight(canvas, self._readouts, shown, row)
         head.write(canvas)
-        if thinks and self.copilot_panel.fits(canvas) and not self._behind_panel(canvas, view, pose):
+        stands = thinks if whole else self.panel_stands
+        if stands and self.copilot_panel.fits(canvas) and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, self.network.name)
 
     def _shown(self, *, whole: bool) -> list[str]:

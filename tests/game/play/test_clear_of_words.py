@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pygame
 import pytest
@@ -118,6 +119,22 @@ def test_every_word_of_play_and_its_pause_changes_with_the_language(
 
 
 # What flies and what is said keep clear of each other: paths, panels, read-outs, hints.
+
+
+def test_the_six_paths_are_shown_before_the_start_where_their_key_is_named(open_game: Open, context: Context):
+    def sky() -> Any:
+        driver.frames(150)
+        assert play(driver).flown.waiting
+        return pygame.surfarray.array3d(driver.app.canvas.surface)
+
+    save_settings(context)
+    driver = open_game(PlayScene, 4)
+    without = sky()
+    assert texts.HINT_THINKS in driver.hints()
+    driver.key(pygame.K_F1)
+    assert (sky() != without).any()
+    driver.key(pygame.K_F1)
+    assert (sky() == without).all()
 
 
 @pytest.fixture
