@@ -196,7 +196,8 @@ class PlayScene(Scene):
     @property
     def leave_word(self) -> str:
         """What Escape does, in a word."""
-        return texts.HINT_LEAVE if self.leaves else texts.HINT_PAUSE
+        stays = texts.HINT_MENU if self.flight.over else texts.HINT_PAUSE
+        return texts.HINT_LEAVE if self.leaves else stays
 
     @property
     def runs(self) -> dict[Command, Run]:

@@ -202,6 +202,7 @@ def test_the_pause_after_a_flight_shows_nothing_that_the_network_thinks(
     end(driver, TOO_FAST)
     driver.frames(90)
     written.clear()
+    assert {texts.HINT_MENU, texts.HINT_PAUSE} & driver.hints().keys() == {texts.HINT_MENU}
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
     assert driver.top_name == "FlightPauseScene"
