@@ -106,7 +106,8 @@ class Tutorial(Challenge):
         self.rules.through, self.rules.fixed, self.rules.again = True, False, False
 
     def start(self, wanted: Wanted) -> Start:
-        """Begin at the current lesson; without a network, leave out what needs one."""
+        """Begin at the current lesson, or after one just done; without a network, leave out what needs one."""
+        self._number += bool(self.praise and not self.rules.through)
         self._leave_out(wanted.network)
         self._begin()
         recording = Recording(wanted.seed, "random", mission=FIRST.name)
@@ -152,7 +153,7 @@ class Tutorial(Challenge):
         self._flown_for += 1
         self._handed_over |= flight.chooser.hand is StickHolder.NETWORK
         if self.praise:
-            self.praise -= 1
+            self.praise -= 0 if flight.over else 1  # a landing is praised until the next flight
             if not self.praise:
                 self._begin_lesson(self._number + 1)
             return ""

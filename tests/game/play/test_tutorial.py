@@ -258,6 +258,19 @@ def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes
     assert tutorial(driver).rules.through
 
 
+def test_who_has_landed_is_praised_until_the_next_flight_and_not_told_to_do_it_once_more(open_game: Open):
+    driver = at_lesson(open_game, "land")
+    driver.key(pygame.K_UP)
+    lessons, first, said = tutorial(driver), play(driver).flight, set[str]()
+    place(first.env, *ON_PAD)
+    while play(driver).flight is first:
+        driver.skip()
+        if first.over and play(driver).flight is first:
+            said.add(lessons.sentence(first, driver.app.context.controls))
+    assert said == {texts.TUTORIAL_GOOD["land"]}
+    assert lessons.lesson.name == "hand_over"
+
+
 def saved(driver: Driver) -> tuple[bool, bool]:
     values = driver.saved()
     return values["tutored"], values["first_flown"]
