@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -28,7 +28,8 @@ HOME: Final = (0.0, VIEW_BOTTOM + VIEW_SIZE[1] / POINTS_PER_METRE / 2)
 # The ground stays on one row of the screen, whatever the zoom: a camera that comes nearer also comes lower.
 GROUND_LINE: Final = 1.0  # metres
 GROUND_ROW: Final = VIEW_SIZE[1] / 2 + (HOME[1] - GROUND_LINE) * POINTS_PER_METRE  # points
-WIDEST: Final = 0.6  # zoom at which all of the world in which a flight may be is seen
+WIDEST: Final = 0.6  # zoom at which all of the world in which a flight may be is seen, and the least at which land is
+FARTHEST: Final = 0.25  # of a craft that flies high where words leave little of a window
 CLOSEST: Final = 2.0
 # Lines of a page for which the world is painted at most. A larger window shows the same pictures, scaled: at arm's
 # length that is not seen, and 2,160 lines would take twice as long to paint, and to scale at every zoom.
@@ -82,6 +83,13 @@ class View:
     def painted_per_metre(self) -> float:
         """Scale, in pixels per metre, at which to paint pictures that are then scaled to this view and later ones."""
         return POINTS_PER_METRE * min(self.scale, MOST_LINES / VIEW_SIZE[1]) * (self.closest or self.zoom)
+
+    @property
+    def of_land(self) -> View:
+        """This view of land, which goes on at its size where a camera goes farther away than the land is painted."""
+        zoom = max(self.zoom, WIDEST)
+        height = GROUND_LINE + (self.centre[1] - GROUND_LINE) * self.zoom / zoom
+        return replace(self, centre=(self.centre[0], height), zoom=zoom)
 
     def pixels(self, position: npt.ArrayLike) -> Pixels:
         """Turn world positions (..., 2) into pixels of the view."""
@@ -153,13 +161,13 @@ class CameraTarget:
         """Return the closest shot whose clear part shows `left` to `right`, and up to `top`, in metres."""
         wide = (clear.right - clear.left) / (POINTS_PER_METRE * max(right - left, 1.0))
         high = (GROUND_ROW - clear.head - clear.foot) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
-        zoom = max(min(wide, high, CLOSEST), WIDEST)
+        zoom = max(min(max(min(wide, CLOSEST), WIDEST), high), FARTHEST)
         aside = ((clear.left + clear.right) - VIEW_SIZE[0]) / (2 * POINTS_PER_METRE * zoom)
         return cls((left + right) / 2 - aside, zoom).on_land()
 
     def on_land(self) -> CameraTarget:
         """Return this shot, moved so that it never shows where the land ends."""
-        reach = LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * self.zoom)
+        reach = max(0.0, LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * self.zoom))
         return CameraTarget(min(max(self.across, -reach), reach), self.zoom)
 
     def view(self, scale: float) -> View:
@@ -230,7 +238,7 @@ class Camera:
         """Keep a position in view, even where the spring is too slow for it."""
         most = VIEW_SIZE[0] / (2 * POINTS_PER_METRE)
         high = math.log(GROUND_ROW / (POINTS_PER_METRE * max(y + _EDGE - GROUND_LINE, 1.0)))
-        bounded = max(min(self._state[1], high), math.log(WIDEST))
+        bounded = max(min(self._state[1], max(high, math.log(WIDEST))), math.log(FARTHEST))
         room = most / math.exp(bounded) - _EDGE
         held = np.array([min(max(self._state[0], x - room), x + room), bounded])
         self._speed = np.where(held == self._state, self._speed, (held - self._before) / STEP)

@@ -13,7 +13,7 @@ from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
 from game.world.callouts import draw_factors, draw_words
-from game.world.camera import WIDEST, Camera, CameraTarget, ClearArea, View
+from game.world.camera import LAND_REACH, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
@@ -23,7 +23,7 @@ from game.world.stage import Stage, flames
 _EDGE, _FOOT = 24.0, 100.0  # points that a mark keeps from the sides, and from the lower edge with its read-outs
 
 _BORDER: Final = 40.0  # points from the sides within which a craft is about to leave a view that rests
-_HEAD: Final = 84.0  # points at the top into which a craft that leaves flies no farther
+_INTO: Final = 20.0  # points that it flies into what words have at the top
 
 
 class Scenery:
@@ -77,10 +77,12 @@ class Scenery:
 
     def _keep_in_view(self) -> None:
         """With reduced motion, show all of the world, once and for good, before the craft leaves what is seen."""
-        x, y = self._camera.view(1.0).points(self._flight.env.position[0]).tolist()
-        seen = _BORDER <= x <= VIEW_SIZE[0] - _BORDER and y >= _HEAD
-        if not seen and self._camera.shot.zoom > WIDEST:
-            self._camera.cut(CameraTarget(zoom=WIDEST))
+        env, clear = self._flight.env, self.clear
+        x, y = self._camera.view(1.0).points(env.position[0]).tolist()
+        seen = _BORDER <= x <= VIEW_SIZE[0] - _BORDER and y >= clear.head + clear.foot - _INTO
+        zoom = CameraTarget.around(-LAND_REACH, LAND_REACH, env.limits.ceiling, clear).zoom
+        if not seen and self._camera.shot.zoom > zoom:
+            self._camera.cut(CameraTarget(zoom=zoom))
 
     def wind_to(self) -> None:
         """Show the flight at another moment, without the traces of the steps before."""

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _WAITING: Final = 196.0  # points at the head for the words over a craft that waits, before they are laid out
 _BESIDE: Final = 3.0  # radii of the Earth that a craft that waits keeps from it
-_BELOW_HEAD: Final = 44.0  # and between the words and the craft
+_BELOW_HEAD: Final = 0.06  # of the window's height, between the words and the craft
 _LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _CATCHES_UP: Final = 6  # steps of the network's own flight in a frame, once the player's is over
 _LONGEST: Final = 3600  # steps after which its flight counts as one that does not land
@@ -312,7 +312,8 @@ class FlownFlight:
 
     def _clear_of(self, head: Head) -> ClearArea:
         reading = self.context.reading()
-        low, foot = head.write(reading, drawn=False) + _BELOW_HEAD, foot_of(reading, self._shown(whole=False))
+        low, foot = head.write(reading, drawn=False), foot_of(reading, self._shown(whole=False))
+        low += _BELOW_HEAD * reading.view.height
         right = self.copilot_panel.box(reading).left - 16 if self.panel_stands else reading.view.right
         return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - reading.row - low))
 

@@ -70,7 +70,7 @@ class Backdrop:
         Distant layers keep their size at any zoom. They move up and down with the horizon, and sideways by a small
         share of the camera's movement (parallax).
         """
-        view = view or View(self._unit, origin=(self._aside, self._above))
+        view = (view or View(self._unit, origin=(self._aside, self._above))).of_land
         across = -view.centre[0] * POINTS_PER_METRE * view.scale
         horizon = view.pixel(0.0, HORIZON_HEIGHT)[1]
         down = round(horizon - self._above - PLAIN_HORIZON * self._height)

@@ -7,6 +7,7 @@ from typing import Any
 import pygame
 import pytest
 
+from ai.environment import Doubles
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.scene import Push
@@ -19,6 +20,8 @@ from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.tooltip import draw_tooltip
+from game.world.camera import View
+from game.world.stage import Stage
 from tests.game.play import ends
 from tests.game.play.ends import ON_PAD, TOO_FAST, end
 from tests.support.driver import Driver
@@ -190,6 +193,29 @@ def test_the_sentence_of_a_flight_keeps_clear_of_the_panel(shared: Driver, monke
     lines = [box for words, box in drawn if words and words in head.sentence and box.top < 60]
     assert lines
     assert all(not box.colliderect(head.panel) for box in lines)
+
+
+@pytest.mark.parametrize("calm", [False, True])
+@pytest.mark.parametrize("size", [(800, 450), (800, 600), (1280, 720)])
+def test_a_craft_is_seen_below_the_words_wherever_it_flies(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int], *, calm: bool
+):
+    def noted(_: Stage, canvas: Canvas, view: View, pose: Doubles, **__: object) -> None:
+        tops.append(canvas.reading.points(view.pixel(float(pose[0]), float(pose[1]) + 1))[1])
+
+    tops: list[float] = []
+    monkeypatch.setattr(Stage, "draw_lander", noted)
+    save_settings(context, reduced_motion=calm)
+    driver = open_game(PlayScene, 4)
+    driver.resize(size)
+    driver.write_in("largest")
+    assert tops[-1] > play(driver)._head.write(driver.app.canvas.reading, drawn=False)
+    for height in (3, 12, 19, 25):
+        place(driver, 0, height, 0, 0, 0, 0)
+        driver.frames(2)
+        play(driver).flown.scenery.cut()  # as for a craft that did not leap there
+        driver.frames()
+        assert tops[-1] > play(driver)._head.write(driver.app.canvas.reading, drawn=False), height
 
 
 def test_the_pause_after_a_flight_shows_nothing_that_the_network_thinks(

@@ -13,7 +13,7 @@ from game.drawing.tokens import TEXT_SIZES, VIEW_SIZE
 from game.flight.flight import Flight
 from game.world import framing
 from game.world.callouts import draw_factors
-from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, CameraTarget, ClearArea, View
+from game.world.camera import CLOSEST, FARTHEST, GROUND_LINE, GROUND_ROW, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.sheet import WorldPicture
 from tests.support.flights import begun
 from tests.support.landers import placed, put
@@ -42,7 +42,7 @@ def test_craft_and_pad_are_in_every_shot_of_any_state():
         assert seen(view, (start[0], start[1]), 20)
         assert seen(view, (-PARAMS.pad_width / 2, PARAMS.pad_top))
         assert seen(view, (PARAMS.pad_width / 2, PARAMS.pad_top))
-        assert WIDEST <= view.zoom <= CLOSEST
+        assert FARTHEST <= view.zoom <= CLOSEST
 
 
 def test_a_craft_that_is_faster_than_the_camera_never_leaves_the_view():
@@ -55,7 +55,7 @@ def test_a_craft_that_is_faster_than_the_camera_never_leaves_the_view():
         put(env, start)
         framing.follow(camera, env)
         assert seen(camera.view(1.0), (start[0], start[1]))
-        assert WIDEST - 1e-9 <= camera.shot.zoom <= CLOSEST + 1e-9
+        assert FARTHEST - 1e-9 <= camera.shot.zoom <= CLOSEST + 1e-9
 
 
 def test_the_camera_comes_nearer_on_the_way_down_and_the_ground_stays_on_its_row():
