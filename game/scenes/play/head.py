@@ -35,7 +35,13 @@ _SENTENCE: Final = 18.0
 _WIDEST: Final = 480.0  # points of a line of it, which ends before the Earth
 _COVER: Final = 0.75  # opacity behind words: no star shines through
 _MOST: Final = 0.42  # of a window's height that words take from the flight
-_FEWER: Final[Sequence[dict[str, Any]]] = ({}, {"aside": ()}, {"caption": "", "name": ""}, {"help": None})
+_FEWER: Final[Sequence[dict[str, Any]]] = (
+    {},
+    {"aside": ()},
+    {"caption": "", "name": ""},
+    {"controls": ()},
+    {"help": None},
+)
 _LINE: Final = 29.0  # from one row of keys to the next
 
 
@@ -168,7 +174,8 @@ class _Layout:
             cursor.gap(12)
             self.help_line = cursor.y + SMALL
             first, *others = head.help.boxes(canvas, self.middle, self.help_line).values()
-            self.boxes.append(first.unionall(others))
+            keys = canvas.text_width(head.keys, size=SMALL, weight="medium")  # which stand before the words
+            self.boxes.append(first.move(-keys, 0).unionall([first, *others]))
             if self.drawn:
                 head.help.draw(canvas, self.middle, self.help_line, head.means, head.keys)
             cursor.gap(LEADING * SMALL + 6)
