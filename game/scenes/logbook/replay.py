@@ -48,6 +48,7 @@ from game.world.scenery import Scenery
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _OPEN: Final = "replay"  # what stays open, by its name in the settings
+_LOW: Final = 320.0  # points of a window's height below which figures would leave the flight no room
 _SECONDS: Final = 22.0  # size of the moment that is shown
 
 
@@ -158,7 +159,7 @@ class ReplayScene(WorldScene):
         head.aside(lambda: self._titles()[0])
         head.text(lambda: self._titles()[1])
         head.add(self._write_moment)
-        foot.add(lambda cursor: readouts.write_readouts(cursor, {name: self._readouts[name] for name in PILOT}))
+        foot.add(self._write_readouts)
         self._strip = foot.widget(Timeline(self.record.recording, self.go_to, self._stop_or_go))
         self._strip.at = self.flight_replay.at
         more = self.context.settings.is_open(_OPEN)
@@ -248,6 +249,10 @@ class ReplayScene(WorldScene):
         title = title if self.flight_replay.faithful else texts.REPLAY_OTHER_RULES
         end = ending_word(entry.outcome, intact=entry.intact)
         return title, texts.REPLAY_LINE.format(end=end, seconds=entry.seconds, when=when)
+
+    def _write_readouts(self, cursor: Cursor) -> None:
+        if self.context.reading().view.height >= _LOW:
+            readouts.write_readouts(cursor, {name: self._readouts[name] for name in PILOT})
 
     def _write_moment(self, cursor: Cursor) -> None:
         """Write the seconds, and who flies at that moment or how it ended."""
