@@ -55,7 +55,7 @@ class Canvas:
         view: all that is seen, in points.
         origin: where the point (0, 0) lies on the surface, in pixels.
         size: the width and height in pixels of the page, or of all that is seen.
-        row: points at the foot of what is read that a message covers now.
+        message: box in points of what is read that a message covers now; empty while there is none.
         palette: the player's colours for within and beyond limits.
         zoom: factor by which the player wants text enlarged.
         pointer: position of the mouse in points; None while it is not in use.
@@ -65,7 +65,7 @@ class Canvas:
 
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
-        self.scale, self.zoom, self.row = 0.0, 1.0, 0.0
+        self.scale, self.zoom, self.message = 0.0, 1.0, pygame.FRect()
         self._whole: Canvas | None = None
         self._type = 0.0  # of a canvas that is no part of a window
         self.pointer: Point | None = None

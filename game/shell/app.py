@@ -118,7 +118,7 @@ class App:
         self._last = time_now
         for _ in range(steps):
             self.notes.update()
-            self.canvas.row = self.notes.height(self.canvas.reading)
+            self.canvas.message = self.notes.box(self.canvas.reading)
             if problem := self.settings_writer.problem():
                 self.notes.show(problem)
             self._guarded(self.scenes.update)

@@ -55,9 +55,11 @@ class HintRow:
         return self._boxes(self._widths(canvas))
 
     def draw(self, canvas: Canvas) -> None:
-        """Write the hints; the one below the mouse stands out if it can be clicked."""
+        """Write the hints that no message covers; the one below the mouse stands out if it can be clicked."""
         size, widths = self.size, self._widths(canvas)  # once: measuring words costs as much as writing them
         for hint, width, box in zip(self.hints, widths, self._boxes(widths), strict=True):
+            if canvas.message.colliderect(box):
+                continue
             pointed = hint.run and canvas.pointer is not None and box.collidepoint(canvas.pointer)
             x, y = box.x + _BESIDE, self.position[1]
             canvas.text(hint.key, (x, y), size=size, colour=INK, weight="medium")

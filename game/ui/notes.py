@@ -41,9 +41,9 @@ class Note:
         """Advance by 1/60 s."""
         self._left = max(0, self._left - 1)
 
-    def height(self, canvas: Canvas) -> float:
-        """Return how much of the foot it takes, in points of what is read; 0 while nothing is said."""
-        return self._write(canvas, drawn=False).height + _APART if self._left else 0.0
+    def box(self, canvas: Canvas) -> pygame.FRect:
+        """Return what the message takes of the foot, in points of what is read; an empty box while nothing is said."""
+        return self._write(canvas, drawn=False).inflate(0, _APART) if self._left else pygame.FRect()
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the message, if one is to be seen."""

@@ -1,7 +1,8 @@
 """What is asked about a taste, made up."""
 
+from unittest.mock import patch
+
 import numpy as np
-import pytest
 
 from ai.lander.environment import Outcome
 from ai.training.preferences import SUMS
@@ -26,8 +27,7 @@ def asked(answers: int = 0) -> Asked:
 
 def raised(context: Context) -> TasteScene:
     """Return the screen as it is after a few answers, without a process."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(TrainingRun, "begin", lambda *_: None)
+    with patch.object(TrainingRun, "begin"):
         scene = TasteScene(context)
     scene.run.asked = asked(3)
     scene.pair.ask(scene.run.asked.question)

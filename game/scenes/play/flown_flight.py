@@ -315,7 +315,7 @@ class FlownFlight:
         low, foot = head.write(reading, drawn=False), foot_of(reading, self._shown(whole=False))
         low += _BELOW_HEAD * reading.view.height
         right = self.copilot_panel.box(reading).left - 16 if self.panel_stands else reading.view.right
-        return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - reading.row - low))
+        return ClearArea.of(reading, pygame.FRect(0, low, right, foot.top - reading.message.height - low))
 
     @property
     def thinks(self) -> bool:
@@ -333,7 +333,7 @@ class FlownFlight:
         `low` is how far a card reaches down, in points, which the read-outs give way to.
         """
         flight, shown = self.flight, self._shown(whole=whole)
-        row = 0.0 if whole else canvas.row
+        row = 0.0 if whole else canvas.message.height
         foot = foot_of(canvas, shown).top - row
         world = canvas.above(canvas.view.bottom - foot)
         alpha = self.pace.between(alpha)

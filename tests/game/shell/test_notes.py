@@ -47,4 +47,4 @@ def test_a_note_stands_whole_in_the_middle_moves_nothing_and_goes_by_a_click(
     place = driver.app.canvas.reading.points(driver.app.canvas.pixels(said[0].box.center))
     scene = driver.top
     driver.click(place)
-    assert (driver.top, driver.app.canvas.row) == (scene, 0.0)
+    assert (driver.top, driver.app.canvas.message.height) == (scene, 0.0)
