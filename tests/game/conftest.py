@@ -44,9 +44,11 @@ def networks_unread() -> None:
 
 @pytest.fixture(autouse=True)
 def usual_text() -> Iterator[None]:
-    """Leave text as large as it was found, and nothing that was written in another language: both are the process's."""
-    read = texts.MENU
+    """Leave the language as it was found, and nothing that was written in another: both are the process's."""
+    read, language = texts.MENU, texts.LANGUAGE
     yield
+    if language != texts.LANGUAGE:
+        texts.choose(language)
     if texts.MENU is not read:
         typeface.forget()
 
