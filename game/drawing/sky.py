@@ -27,9 +27,9 @@ class NightSky:
         self._dots: list[Stamp] = []
         self._glows: list[Stamp] = []
 
-    def draw(self, canvas: Canvas, *clear: pygame.FRect) -> None:
-        """Draw the sky over the whole view, without stars in these boxes."""
-        places, canvas = [canvas.rect(*box) for box in clear], canvas.whole
+    def draw(self, canvas: Canvas, clear: pygame.FRect) -> None:
+        """Draw the sky over the whole view, without stars in a box that is clear for words."""
+        words, canvas = canvas.rect(*clear), canvas.whole
         surface, size = canvas.surface, canvas.surface.get_size()
         if size != self._size:
             self._size, self._dots, self._glows = size, [], []
@@ -39,8 +39,7 @@ class NightSky:
         surface.blit(night, (0, 0))
         surface.fblits(self._dots)
         surface.fblits(self._glows, pygame.BLEND_RGB_ADD)
-        for place in places:
-            surface.blit(night, place, place)
+        surface.blit(night, words, words)
 
     def _paint(self, canvas: Canvas, place: tuple[float, float], brightness: float) -> None:
         """Paint a star at a place in shares of the view; it fades towards the horizon, and a bright one glows."""
