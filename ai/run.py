@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 
-from ai.files import FolderKind
+from ai.files.folder import FolderKind
 
 TRAINING_FILE: Final = "training.json"  # in a run's folder: how it was made, and what it has measured
 

@@ -38,7 +38,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     """
     tell_sdl()
     from ai.cli.command_line import stoppable
-    from ai.files import user_dir
+    from ai.files.folder import user_dir
     from game.core import texts
     from game.core.settings import SettingsFile
     from game.drawing.paint_cache import A_FRAME, spread

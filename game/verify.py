@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.cli.command_line import readable
-from ai.files import brief, read_text
+from ai.files.reading import brief, read_text
 from ai.flights.code import codes_in
 from ai.flights.recording import ClaimedFlight
 from ai.flights.verification import Earned, is_true, verified

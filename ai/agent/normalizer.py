@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.environment import Doubles, Floats
-from ai.files import count_of
+from ai.files.reading import count_of
 
 REACH: Final = 10.0  # standard deviations from the mean at which values are clipped
 _LEAST: Final = 1e-30  # of a deviation that is one: its inverse is a number in single precision

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ai.agent.config import AgentConfig
 from ai.environment import Doubles, Floats, Ints
-from ai.files import array_like
+from ai.files.reading import array_like
 
 BLOCK: Final = 16  # priorities that have one sum
 

@@ -13,18 +13,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from ai.agent.config import AgentConfig
-from ai.files import (
-    NETWORK,
-    OF_A_RUN,
-    FolderKind,
-    atomic_folder,
-    check_header,
-    count_of,
-    inside,
-    read_arrays,
-    read_json,
-    recover_folder,
-)
+from ai.files.folder import NETWORK, OF_A_RUN, FolderKind, atomic_folder, recover_folder
+from ai.files.reading import count_of, inside, read_arrays, read_json
+from ai.files.schema import check_header
 from ai.nn import NeuralNetwork
 from ai.nn.layer import MOST_VALUES
 from ai.nn.storage import reading

@@ -83,7 +83,7 @@ def readable(line: str, longest: int = LONGEST) -> str:
 
 def folder(text: str) -> Path:
     """Return the path of a folder that the user named; raises ArgumentTypeError for one that cannot be, or be shown."""
-    from ai.files import CONTROLS
+    from ai.files.reading import CONTROLS
 
     try:
         os.fsencode(text)
@@ -119,7 +119,8 @@ def _logged(error: BaseException) -> str:
     """Write where an error comes from to the log of environments, if that can be; return words that name the file."""
     import traceback
 
-    from ai.files import user_dir, write_text
+    from ai.files.folder import user_dir
+    from ai.files.writing import write_text
 
     path = user_dir() / "environment.log"
     try:

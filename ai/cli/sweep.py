@@ -93,7 +93,7 @@ def _run(study: Study, address: str | None) -> tuple[list[int], dict[int, str]]:
 
 def _place(arguments: argparse.Namespace) -> Path:
     """Return the folder of the study, among the user's or where a path leads; raises ValueError for no such name."""
-    from ai.files import user_dir
+    from ai.files.folder import user_dir
     from ai.sweep.study import STUDIES
 
     name = arguments.study

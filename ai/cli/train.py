@@ -105,7 +105,7 @@ def _preset(named: str | None, presets: Mapping[str, Preset], begun: Preset | No
 
 def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., Any]) -> int:
     """Train a run with the settings of `config`, begun or resumed, keep what comes of it, and return the exit code."""
-    from ai.files import claimed_folder
+    from ai.files.folder import claimed_folder
     from ai.training.run import Limit, resume
 
     output = arguments.output or arguments.resume
@@ -229,7 +229,7 @@ def _kept(training: Run, output: Path, *, final: bool) -> tuple[Path, dict[str, 
 
     If something else was put there meanwhile, that stays, and the run is saved beside it.
     """
-    from ai.files import free_path
+    from ai.files.writing import free_path
     from ai.training.run import save
 
     try:

@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.digits.preprocessing import SIDE
-from ai.files import CONFIG, OF_A_RUN, FolderKind, atomic_folder, check_header, inside, read_json, recover_folder
-from ai.files import NETWORK as NETWORK_KIND
+from ai.files.folder import CONFIG, OF_A_RUN, FolderKind, atomic_folder, recover_folder
+from ai.files.folder import NETWORK as NETWORK_KIND
+from ai.files.reading import inside, read_json
+from ai.files.schema import check_header
 from ai.nn import NeuralNetwork, softmax
 from ai.nn.storage import reading
 

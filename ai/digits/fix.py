@@ -15,7 +15,9 @@ from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
 from ai.digits.preprocessing import Image
 from ai.digits.training import accuracy
-from ai.files import CONFIG, Share, read_as, read_json
+from ai.files.folder import CONFIG
+from ai.files.reading import read_json
+from ai.files.schema import Share, read_as
 from ai.nn import Adam
 from ai.run import TRAINING_FILE
 

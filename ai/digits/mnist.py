@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import problem_in, read_arrays, read_bytes
+from ai.files.reading import problem_in, read_arrays, read_bytes
 
 FOLDER: Final = Path(__file__).parents[2] / "assets" / "mnist"
 TRAIN, TEST = "train", "test"

@@ -16,7 +16,8 @@ from ai.digits.classifier import KIND, DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.handwriting import drawings
 from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
-from ai.files import Count, Duration, OneOf, Seed, Share, array_like, inside, number_of, read_as, read_json
+from ai.files.reading import array_like, inside, number_of, read_json
+from ai.files.schema import Count, Duration, OneOf, Seed, Share, read_as
 from ai.nn import OPTIMIZERS, Array
 from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Measured, Run

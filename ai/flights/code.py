@@ -17,7 +17,8 @@ from typing import Annotated, Final
 
 import numpy as np
 
-from ai.files import OneOf, Sized, Within, parse_json, read_as
+from ai.files.reading import parse_json
+from ai.files.schema import OneOf, Sized, Within, read_as
 from ai.flights.recording import LONGEST, Claim, ClaimedFlight, LegAsList, Recording, Start, StickHolder
 from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome

@@ -6,7 +6,7 @@ from dataclasses import asdict, astuple, dataclass, field, fields, replace
 from enum import Enum
 from typing import Annotated, Any, Final, Self
 
-from ai.files import OneOf, Seed, Within
+from ai.files.schema import OneOf, Seed, Within
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS, STARTS, Mission

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import array_like, count_of
+from ai.files.reading import array_like, count_of
 from ai.nn.parameter import Array
 
 

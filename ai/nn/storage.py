@@ -13,19 +13,9 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import (
-    CONFIG,
-    NETWORK,
-    atomic_folder,
-    brief,
-    check_header,
-    inside,
-    problem_in,
-    read_array,
-    read_json,
-    recover_folder,
-    shown,
-)
+from ai.files.folder import CONFIG, NETWORK, atomic_folder, recover_folder
+from ai.files.reading import brief, inside, problem_in, read_array, read_json, shown
+from ai.files.schema import check_header
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.costs import COSTS, Cost
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ai.files import brief
+from ai.files.reading import brief
 from ai.lander.rewards import Situation
 from ai.lander.rules import NUM_ACTIONS
 

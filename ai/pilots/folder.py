@@ -6,7 +6,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.files import Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
+from ai.files.reading import read_text
+from ai.files.schema import Share, Sized, Within, read_lines
+from ai.files.writing import append_line, free_path, write_text
 
 TEMPLATE: Final = Path(__file__).parents[2] / "assets" / "pilots" / "pilot.py"
 _SUFFIX: Final = ".py"

@@ -16,7 +16,7 @@ from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import Any
 
-from ai.files import CONTROLS
+from ai.files.reading import CONTROLS
 from ai.pilots.child import ACT, serve
 
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields
 from typing import Annotated, Any, Final, Self
 
 from ai.digits.config import DigitConfig
-from ai.files import Count, OneOf, Seed, Share, Sized, Within
 from ai.files.knobs import Knobs
+from ai.files.schema import Count, OneOf, Seed, Share, Sized, Within
 from ai.training.config import ANYWHERE, LANDER, Config
 
 AGENT, DIGITS = "agent", "digits"  # kinds of run

@@ -18,8 +18,8 @@ from optuna.distributions import CategoricalDistribution, FloatDistribution, Int
 from optuna.trial import TrialState, create_trial
 from ray.exceptions import RayError, RayTaskError
 
-from ai.files import brief
 from ai.files.knobs import Knobs
+from ai.files.reading import brief
 from ai.sweep.design import choices_of
 from ai.sweep.study import Study
 from ai.sweep.trial import trained

@@ -18,21 +18,10 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
-from ai.files import (
-    Count,
-    Duration,
-    Seed,
-    Sized,
-    atomic_folder,
-    brief,
-    check_header,
-    read_as,
-    read_json,
-    recover_all,
-    take_folder,
-    write_bytes,
-    write_text,
-)
+from ai.files.folder import atomic_folder, recover_all, take_folder
+from ai.files.reading import brief, read_json
+from ai.files.schema import Count, Duration, Seed, Sized, check_header, read_as
+from ai.files.writing import write_bytes, write_text
 from ai.sweep.design import Design, Measurement, Metric
 
 STUDIES: Final = "studies"  # folder of all studies, in the user's

@@ -15,8 +15,8 @@ from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.environment import finished
-from ai.files import brief
 from ai.files.knobs import Knobs
+from ai.files.reading import brief
 from ai.sweep.design import DIGITS, Design, Measurement, Metric
 from ai.sweep.study import Files, SeedResult, Trial, median, seed_folder
 from ai.training.config import Config

@@ -10,8 +10,8 @@ from typing import Any, Final, Self
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.storage import AGENT_FILE
-from ai.files import brief, shown
 from ai.files.knobs import knob
+from ai.files.reading import brief, shown
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn.storage import reading

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.environment import SUCCESS, Bools, Doubles, ForeignEnvError, Ints, StepResult
-from ai.files import brief, shown
+from ai.files.reading import brief, shown
 
 if TYPE_CHECKING:
     import gymnasium

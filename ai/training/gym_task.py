@@ -11,7 +11,8 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.environment import SUCCESS, ForeignEnvError, Ints
-from ai.files import Count, brief, parse_json, shown
+from ai.files.reading import brief, parse_json, shown
+from ai.files.schema import Count
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
 from ai.training.gym_env import GOING_ON, GymEnv, asked, features_of

@@ -18,7 +18,8 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.digits.training import DigitProgress
 from ai.environment import Doubles, Floats
-from ai.files import MOST, Above, Count, Sized, Within, inside, problem_in, read_arrays, read_as, read_json, read_text
+from ai.files.reading import MOST, inside, problem_in, read_arrays, read_json, read_text
+from ai.files.schema import Above, Count, Sized, Within, read_as
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
 from ai.run import Measured

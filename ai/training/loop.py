@@ -23,7 +23,7 @@ from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.environment import Env, Floats, StepResult
-from ai.files import count_of, inside, number_of, read_json
+from ai.files.reading import count_of, inside, number_of, read_json
 from ai.lander.rewards import REWARDS
 from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Measured, Run

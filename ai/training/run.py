@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
-from ai.files import atomic_folder
+from ai.files.folder import atomic_folder
 from ai.nn import ModelFormatError
 from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Run

@@ -11,7 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.files import STATE_FILE, inside, parse_json, read_arrays
+from ai.files.folder import STATE_FILE
+from ai.files.reading import inside, parse_json, read_arrays
 from ai.nn.storage import reading
 
 MOST: Final = 100_000_000  # bytes of a state; of a larger memory, the newest part is kept

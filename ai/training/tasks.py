@@ -15,7 +15,7 @@ import numpy as np
 from ai.agent.schedule import linear
 from ai.agent.symmetry import Symmetry
 from ai.environment import Doubles, Env, Ints, T
-from ai.files import read_as
+from ai.files.schema import read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import Pilot

@@ -12,7 +12,9 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Annotated, Any, Final
 
-from ai.files import OneOf, Share, Within, parse_json, read_text, sound_fields, take, write_text
+from ai.files.reading import parse_json, read_text
+from ai.files.schema import OneOf, Share, Within, sound_fields
+from ai.files.writing import take, write_text
 from game.core import texts
 
 FILE_NAME: Final = "settings.json"

@@ -14,7 +14,8 @@ from pathlib import Path
 from threading import RLock
 from typing import Final, Generic, TypeVar
 
-from ai.files import atomic_folder, brief, recover_all, recover_folder, take_folder
+from ai.files.folder import atomic_folder, recover_all, recover_folder, take_folder
+from ai.files.reading import brief
 from game.core import texts
 
 T = TypeVar("T")

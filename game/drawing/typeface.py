@@ -17,7 +17,7 @@ import numpy.typing as npt
 import pygame
 from font_manrope import font_files
 
-from ai.files import CONTROLS
+from ai.files.reading import CONTROLS
 from game.core import texts
 from game.core.catalogue import ENGLISH
 from game.drawing.glyphs import SIGN, draw_sign, sign_width

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 
-from ai.files import read_text
+from ai.files.reading import read_text
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
 from ai.flights.recording import Claim, ClaimedFlight, StickHolder
 from ai.flights.verification import DAILY, DESCENT, Earned, day_of, in_its_place

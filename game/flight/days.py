@@ -12,7 +12,8 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.files import Count, OneOf, Sized, append_line
+from ai.files.schema import Count, OneOf, Sized
+from ai.files.writing import append_line
 from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts

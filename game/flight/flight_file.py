@@ -16,20 +16,9 @@ from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final, TypeVar
 
-from ai.files import (
-    OneOf,
-    OtherVersionError,
-    Share,
-    Sized,
-    Within,
-    brief,
-    check_header,
-    parse_json,
-    read_as,
-    read_lines,
-    read_text,
-    write_text,
-)
+from ai.files.reading import brief, parse_json, read_text
+from ai.files.schema import OneOf, OtherVersionError, Share, Sized, Within, check_header, read_as, read_lines
+from ai.files.writing import write_text
 from ai.flights.recording import LONGEST, End, LegAsList, Recording, Start, StickHolder
 from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome

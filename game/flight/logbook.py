@@ -13,7 +13,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-from ai.files import append_line, brief, free_path
+from ai.files.reading import brief
+from ai.files.writing import append_line, free_path
 from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
 from game.core.settings import TOP_RUNG, Settings

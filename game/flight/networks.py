@@ -9,7 +9,7 @@ from typing import Final, Protocol, runtime_checkable
 
 from ai.agent.decision import Decision
 from ai.environment import Floats, Ints
-from ai.files import brief
+from ai.files.reading import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS

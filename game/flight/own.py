@@ -8,7 +8,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.files import brief
+from ai.files.reading import brief
 from ai.lander.environment import LanderEnv
 from ai.pilots.folder import Measured, PilotFolder
 from ai.pilots.own import MeasuredPilot, OwnPilot

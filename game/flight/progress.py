@@ -10,7 +10,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Final
 
-from ai.files import free_path
+from ai.files.writing import free_path
 from game.core.settings import Settings
 from game.flight.days import FILE_NAME as DAYS
 from game.flight.logbook import FOLDER, LOGBOOK

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import pygame
 
-from ai.files import free_path, write_bytes
+from ai.files.writing import free_path, write_bytes
 from game.core import texts
 from game.core.clock import FixedStep
 from game.core.scene import Push, Route

@@ -9,7 +9,9 @@ from typing import Annotated, Any, Final
 
 from ai.agent.storage import LAST
 from ai.digits.classifier import NETWORK
-from ai.files import CONFIG, Share, Within, brief, inside, read_as, read_json
+from ai.files.folder import CONFIG
+from ai.files.reading import brief, inside, read_json
+from ai.files.schema import Share, Within, read_as
 from ai.run import TRAINING_FILE
 from ai.training.config import LANDER
 from game.core import texts

@@ -12,7 +12,7 @@ import numpy as np
 from ai.digits.training import DigitProgress
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
-from ai.files import CONFIG, STATE_FILE
+from ai.files.folder import CONFIG, STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Progress

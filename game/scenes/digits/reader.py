@@ -12,7 +12,7 @@ import numpy as np
 
 from ai.digits.classifier import DIGITS
 from ai.digits.preprocessing import SIDE, Image, preprocess_strokes, stroke_width
-from ai.files import brief
+from ai.files.reading import brief
 from game.digits.kept import classifier_in
 from game.digits.pictures import Numbers, visible
 from game.scenes.digits.pad import DrawingPad

@@ -10,7 +10,7 @@ from typing import Final
 
 import pygame
 
-from ai.files import free_path
+from ai.files.writing import free_path
 from ai.flights.code import code_of
 from ai.flights.recording import ClaimedFlight
 from ai.lander.environment import Outcome

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ai.files import brief
+from ai.files.reading import brief
 from ai.pilots.own import OwnPilot
 from game.core import texts
 from game.flight import networks, own

@@ -10,7 +10,7 @@ from typing import Final
 import pygame
 
 from ai.agent.decision import Decision
-from ai.files import brief
+from ai.files.reading import brief
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas

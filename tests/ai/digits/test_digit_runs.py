@@ -9,7 +9,7 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining
-from ai.files import STATE_FILE
+from ai.files.folder import STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training.run import resume, save
 

@@ -19,21 +19,9 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import KIND, write_agent
-from ai.files import (
-    append_line,
-    atomic_folder,
-    claimed_folder,
-    inside,
-    parse_json,
-    read_array,
-    read_arrays,
-    read_bytes,
-    read_json,
-    recover_all,
-    take,
-    take_folder,
-    write_text,
-)
+from ai.files.folder import atomic_folder, claimed_folder, recover_all, take_folder
+from ai.files.reading import inside, parse_json, read_array, read_arrays, read_bytes, read_json
+from ai.files.writing import append_line, take, write_text
 from ai.nn import ActivationFunctions, ActivationLayer, ConvolutionLayer, CostFunctions, ModelFormatError, NeuralNetwork
 from ai.nn.layer import MOST_LAYERS
 from ai.training.config import PRESETS, gym_config
@@ -357,7 +345,7 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
 def test_the_second_training_of_a_folder_is_refused(tmp_path, capsys):
     command = ["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]
     with take_folder(tmp_path / "run"):
-        holder = "from ai.files import take_folder; import sys; take_folder(sys.argv[1])"
+        holder = "from ai.files.folder import take_folder; import sys; take_folder(sys.argv[1])"
         other = subprocess.run(
             [sys.executable, "-c", holder, str(tmp_path / "run")], cwd=ROOT, capture_output=True, text=True, check=False
         )

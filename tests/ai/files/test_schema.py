@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import pytest
 
-from ai.files import Above, OneOf, Share, Sized, Within, check_header, read_as, sound_fields
+from ai.files.schema import Above, OneOf, Share, Sized, Within, check_header, read_as, sound_fields
 
 
 @dataclass(frozen=True)

@@ -231,7 +231,7 @@ def test_training_keeps_what_there_was_before_an_environment_failed_and_goes_on_
 
 
 def test_where_an_environments_error_comes_from_is_in_a_log(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("ai.files.user_dir", lambda: tmp_path / "user")
+    monkeypatch.setattr("ai.files.folder.user_dir", lambda: tmp_path / "user")
     command = ["train", "--env", name("ResetCrashes"), "--seconds", "1", "--output", str(tmp_path / "run")]
     assert main(command) == 1
     assert "environment.log" in capsys.readouterr().err

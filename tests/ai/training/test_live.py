@@ -5,7 +5,7 @@ from itertools import chain, islice, pairwise
 import numpy as np
 import pytest
 
-from ai.files import STATE_FILE
+from ai.files.folder import STATE_FILE
 from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ai.environment import finished
-from ai.files import STATE_FILE
+from ai.files.folder import STATE_FILE
 from ai.nn import ModelFormatError
 from ai.training import state as states
 from ai.training.config import ANYWHERE, PRESETS, Config, gym_config

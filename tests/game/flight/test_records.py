@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.files import read_as
+from ai.files.schema import read_as
 from ai.flights.recording import Easing
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome

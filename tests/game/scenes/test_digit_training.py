@@ -15,7 +15,7 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.validation import Confusion
-from ai.files import STATE_FILE
+from ai.files.folder import STATE_FILE
 from game.core import texts
 from game.core.scene import Scene
 from game.core.worker import WorkerState

@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.files import read_json
+from ai.files.reading import read_json
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import sabotaged
 from ai.training.history import History
