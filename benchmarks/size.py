@@ -18,30 +18,31 @@ from typing import Final
 ROOT: Final = Path(__file__).parents[1]
 TOPS: Final = ("engine", "ai", "game", "tests", "benchmarks")
 CORE: Final = ("engine", "ai/nn", "ai/agent")
-AIMS: Final = {  # lines of all kinds, of code for the core; 10 % more at most
+AIMS: Final = {  # lines of all kinds, of code for the core; a room is 10 % larger at most
     "engine": 1600,
-    "ai/nn": 1600,
-    "ai/agent": 850,
-    "ai/lander": 1750,
-    "ai/training": 2100,
-    "ai/explain": 650,
+    "ai": 13700,
+    "ai/agent": 1000,
+    "ai/cli": 750,
     "ai/copilot": 700,
     "ai/digits": 1500,
-    "ai/flights": 450,
-    "ai/sweep": 700,
-    "ai/files": 550,
-    "ai/cli": 650,
-    "game/core": 950,
-    "game/shell": 950,
-    "game/drawing": 1500,
+    "ai/explain": 900,
+    "ai/files": 650,
+    "ai/flights": 400,
+    "ai/lander": 2300,
+    "ai/nn": 1450,
+    "ai/pilots": 450,
+    "ai/sweep": 600,
+    "ai/training": 3000,
+    "game": 29700,
+    "game/drawing": 1600,
+    "game/explain": 1300,
+    "game/flight": 2200,
+    "game/scenes": 13500,
+    "game/training": 900,
     "game/ui": 2900,
-    "game/world": 3600,
-    "game/flight": 2000,
-    "game/explain": 1400,
-    "game/scenes": 14900,
-    "ai": 11950,
-    "game": 29600,
-    "tests": 28000,
+    "game/world": 3300,
+    "engine + ai + game": 49000,
+    "tests": 27000,
     "benchmarks": 3500,
     "engine + ai/nn + ai/agent": 3000,
 }
@@ -113,6 +114,7 @@ def main() -> None:
             for package, paths in packages:
                 if (ROOT / package).is_dir():
                     report(package, list(paths))
+    report("engine + ai + game", files("engine", "ai", "game"))
     print("\nThe core (its aim is in lines of code), and with all that it imports")
     for folders in (*((folder,) for folder in CORE), CORE):
         name = " + ".join(folders)
