@@ -15,7 +15,8 @@ PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
 LATE = {
     "ai.files.writing": {"filelock"},
-    "ai.cli.command_line": {"tqdm"},
+    "ai.cli.train": {"tqdm"},
+    "ai.cli.sweep": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
     "ai.files.folder": {"platformdirs"},
     "ai.sweep.cluster": {"ray"},

@@ -9,14 +9,12 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import partial, wraps
+from functools import wraps
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 if TYPE_CHECKING:
-    from tqdm import tqdm
-
     from ai.files.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
@@ -48,26 +46,6 @@ def fail(message: str) -> int:
     with suppress(OSError):
         print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
     return FAILED
-
-
-class Unheard:
-    """Standard error as a bar of progress writes to it: a terminal that is gone ends no work."""
-
-    def __getattr__(self, name: str) -> Any:
-        asked = getattr(sys.stderr, name)
-        return partial(_unheard, asked) if name in ("write", "flush") else asked
-
-
-def _unheard(write: Callable[..., Any], *text: str) -> None:
-    with suppress(OSError):
-        write(*text)
-
-
-def progress_bar(total: int, desc: str, **options: Any) -> tqdm[Any]:
-    """Return a bar of progress, which is drawn on terminals alone, and never ends the work that it shows."""
-    from tqdm import tqdm
-
-    return tqdm(total=total, desc=desc, file=Unheard(), **({"disable": None} | options))
 
 
 def say(line: str) -> None:

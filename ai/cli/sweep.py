@@ -71,13 +71,16 @@ def _sweep(arguments: argparse.Namespace) -> int:
 
 def _run(study: Study, address: str | None) -> tuple[list[int], dict[int, str]]:
     """Run the trials that a study has left; return signals that came, and why trials failed, by number."""
+    from tqdm import tqdm
+
     from ai.sweep.cluster import joined
     from ai.sweep.study import settings
 
     with joined(address) as workers, cli.stoppable() as stop:
         from ai.sweep.driver import run
 
-        with cli.progress_bar(study.design.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
+        total, done = study.design.trials, len(study.trials)
+        with tqdm(total=total, initial=done, desc=study.folder.name, unit="trial", disable=None) as bar:
 
             def report(under_way: int) -> None:
                 finished, best = len(study.trials) - bar.n, next(iter(study.ranked()), None)

@@ -61,12 +61,14 @@ def add_commands(commands: Any) -> None:
         command.set_defaults(run=run)
 
 
+@cli.refusing
 def _train(arguments: argparse.Namespace) -> int:
     from ai.training.loop import Training
 
     return _run(arguments, Training, lander_config)
 
 
+@cli.refusing
 def _train_digits(arguments: argparse.Namespace) -> int:
     from ai.digits.training import DigitTraining
 
@@ -110,31 +112,28 @@ def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., A
 
     output = arguments.output or arguments.resume
     limit = Limit(arguments.seconds, getattr(arguments, "decisions", None))
+    cli.check_ranges(arguments, **_RANGES)
+    if output is None:
+        raise ValueError("say where to keep the network: --output DIR, or --resume DIR")
+    if limit.seconds is None and limit.moment is None and "decisions" in arguments:
+        raise ValueError("say when to stop: --seconds S or --decisions N")
+    if arguments.resume is None:
+        training: Any = kind(config(arguments), arguments.seed or 0)
+    else:
+        training = resume(kind, arguments.resume, env=getattr(arguments, "env", None))
+        _go_on(training, config(arguments, training.config), arguments)
     with ExitStack() as claims:
-        try:
-            cli.check_ranges(arguments, **_RANGES)
-            if output is None:
-                raise ValueError("say where to keep the network: --output DIR, or --resume DIR")
-            if limit.seconds is None and limit.moment is None and "decisions" in arguments:
-                raise ValueError("say when to stop: --seconds S or --decisions N")
-            if arguments.resume is None:
-                training: Any = kind(config(arguments), arguments.seed or 0)
-            else:
-                training = resume(kind, arguments.resume, env=getattr(arguments, "env", None))
-                _go_on(training, config(arguments, training.config), arguments)
-            if getattr(arguments, "pay", None):
-                claims.callback(_paid_by(training, arguments.pay))
-            if getattr(arguments, "validation", None):
-                training.validation_episodes = arguments.validation
-            if limit.share(training) >= 1.0:
-                spent = f"{training.seconds:,.1f} seconds, {training.moment:,} steps"
-                raise ValueError(f"this run has taken {spent} already; limits are of the whole run: ask for more")
-            claims.enter_context(claimed_folder(output, kind.kind))
-            another = output.is_dir() and any(output.iterdir())
-            if another and not arguments.replace and not (arguments.resume and output.samefile(arguments.resume)):
-                raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
-        except cli.REFUSED as error:
-            return cli.fail(cli.reason(error))
+        if getattr(arguments, "pay", None):
+            claims.callback(_paid_by(training, arguments.pay))
+        if getattr(arguments, "validation", None):
+            training.validation_episodes = arguments.validation
+        if limit.share(training) >= 1.0:
+            spent = f"{training.seconds:,.1f} seconds, {training.moment:,} steps"
+            raise ValueError(f"this run has taken {spent} already; limits are of the whole run: ask for more")
+        claims.enter_context(claimed_folder(output, kind.kind))
+        another = output.is_dir() and any(output.iterdir())
+        if another and not arguments.replace and not (arguments.resume and output.samefile(arguments.resume)):
+            raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
         return _train_and_keep(training, output, limit)
 
 
@@ -205,22 +204,24 @@ def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None
     That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is said
     once: a disk that is full now may have room by the end.
     """
+    from tqdm import tqdm
+
     from ai.training.run import Keeper
 
     keeper, line_at = Keeper(training, output), time.monotonic() + _LINE_SECONDS
-    with cli.progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
+    with tqdm(total=_PARTS, desc="training", bar_format=_BAR, disable=None) as bar:
         for _ in limit.run(training):
             share, words = limit.share(training), str(training)
             bar.update(int(_PARTS * share) - bar.n)
             bar.set_postfix_str(words, refresh=False)
             if bar.disable and time.monotonic() >= line_at:
                 line_at = time.monotonic() + _LINE_SECONDS
-                print(f"training {share:.0%}: {words}", file=cli.Unheard(), flush=True)
+                cli.fail(f"training {share:.0%}: {words}")
             if stop:
                 break
             for failure in keeper.go_on(training.clock()):
-                said = f"could not write to {output}: {failure.problem}; training goes on"
-                bar.write(cli.readable(said), file=cli.Unheard())
+                bar.clear()
+                cli.fail(f"could not write to {output}: {failure.problem}; training goes on")
     keeper.wait()
 
 

@@ -1,14 +1,14 @@
 """Trials of a study: Optuna asks for settings, Ray's tasks train them, and this process alone writes the study.
 
 Comes with the extra `sweep`. Optuna keeps nothing on disk: when a study goes on, it is told the finished trials, each
-checked when it was read. Ray is told nothing twice: a trial whose worker or node dies begins again elsewhere.
+checked when it was read. Ray begins a trial whose worker or node dies again elsewhere.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from itertools import count
 from typing import Any, Final
 
@@ -24,7 +24,7 @@ from ai.sweep.design import choices_of
 from ai.sweep.study import Study
 from ai.sweep.trial import trained
 
-TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
+RETRIES: Final = 3  # of a trial whose worker dies; after that it waits for --resume
 MOST_LOST: Final = 10  # trials that could not be made, after which no other is begun
 _TURN: Final = 0.2  # seconds after which a wait for workers looks around
 
@@ -72,47 +72,33 @@ def _distribution(config: Knobs, name: str) -> Any:
     )
 
 
-@dataclass
-class _Job:
-    """Trial under way, and how often it was begun."""
-
-    number: int
-    asked: int  # Optuna's number
-    params: dict[str, Any]
-    tries: int = 1
-
-
 def run(study: Study, workers: int, stop: Sequence[int], report: Callable[[int], None]) -> dict[int, str]:
     """Run the trials that a study has left, on the Ray that was joined, until all are done or the user says stop.
 
     `report` is told now and then how many are under way. Returns why trials could not be made, by number; raises
     OSError where a trial cannot be written.
     """
-    proposals, train = Proposals(study), ray.remote(num_cpus=1, max_retries=0)(trained)
+    proposals, train = Proposals(study), ray.remote(num_cpus=1, max_retries=RETRIES)(trained)
     numbers = (number for number in count() if number not in study.trials and number not in study.damaged)
-    jobs: dict[Any, _Job] = {}
+    jobs: dict[Any, tuple[int, int]] = {}  # number of each trial under way, and Optuna's number, by Ray's task
     lost: dict[int, str] = {}
     while not stop:
         left = study.design.trials - len(study.trials) - len(lost)
         while len(jobs) < min(workers, left) and len(lost) < MOST_LOST:
-            job = _Job(next(numbers), *proposals.ask())
-            jobs[train.remote(study.design, job.number, job.params)] = job
+            number, (asked, params) = next(numbers), proposals.ask()
+            jobs[train.remote(study.design, number, params)] = number, asked
         if not jobs:
             break
         for task in ray.wait(list(jobs), timeout=_TURN)[0]:
-            job = jobs.pop(task)
+            number, asked = jobs.pop(task)
             try:
                 trial, files = ray.get(task)
             except RayError as error:
-                if job.tries < TRIES and not isinstance(error, RayTaskError):
-                    job.tries += 1
-                    jobs[train.remote(study.design, job.number, job.params)] = job
-                else:
-                    cause = str(error.cause) if isinstance(error, RayTaskError) else str(error)
-                    lost[job.number] = brief(cause.strip().rpartition("\n")[2])
-                    proposals.tell(job.asked, None)
+                cause = str(error.cause) if isinstance(error, RayTaskError) else str(error)
+                lost[number] = brief(cause.strip().rpartition("\n")[2])
+                proposals.tell(asked, None)
             else:
                 study.record(trial, files)
-                proposals.tell(job.asked, trial.value)
+                proposals.tell(asked, trial.value)
         report(len(jobs))
     return lost
