@@ -135,6 +135,4 @@ class Knobs:
 
     def fixed_differences(self, other: Self) -> list[str]:
         """Return the names of the fields in which `other` differs although a run cannot change them."""
-        taken = self.with_live(other)
-        compared = [item.name for item in fields(self) if item.compare]
-        return [name for name in compared if getattr(taken, name) != getattr(other, name)]
+        return list(self.with_live(other).differences(other))

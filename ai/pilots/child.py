@@ -28,24 +28,21 @@ Answer = Callable[[Any], Any]  # to observations (n, 9), or to the situations be
 def serve(link: Connection, path: str, kind: str) -> None:
     """Run the file, and answer until nobody asks any more.
 
-    A question is a number and what `Answer` takes. An answer is the number of its question, 0 before any, what the
-    file gave, and what went wrong instead: a line and words. Loaded, it gives whether it takes many at once.
+    What is sent back is what the file gave, and what went wrong instead: a line and words. The first, before any
+    question, is whether the file takes many at once.
     """
     _stand_alone(path)
-    number, answer = 0, None
+    question = answer = None
     while True:
-        if answer is not None:
-            number, question = link.recv()
         try:
             if answer is None:
                 answer, given = load(kind, path)
             else:
                 given = answer(question)
-            link.send((number, given, 0, ""))
+            link.send((given, 0, ""))
         except BaseException as error:  # the file may raise whatever it likes
-            link.send((number, None, *problem(error, path)))
-            if answer is None:
-                return
+            link.send((None, *problem(error, path)))
+        question = link.recv()
 
 
 def _stand_alone(path: str) -> None:

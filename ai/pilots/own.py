@@ -34,12 +34,8 @@ class _Alone:
     def __init__(self, path: Path, kind: str) -> None:
         self._process = PilotProcess(path, kind)
         self.close = self._process.close
-        try:
-            if not self._process.ready(LOADING):
-                raise self._process.ended(f"it was not loaded after {LOADING:.0f} seconds")
-        except PilotError:
-            self.close()
-            raise
+        if not self._process.ready(LOADING):
+            raise self._process.ended(f"it was not loaded after {LOADING:.0f} seconds")
 
     def _asked(self, question: Any, what: str) -> Any:
         if (answer := self._process.ask(question, ALONE)) is None:
@@ -99,8 +95,7 @@ class OwnPilot:
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9): those held, or coasting, where the file gives none."""
         observation = observation[:, :NUM_FEATURES]
-        self.look()
-        self._try_next(observation)
+        self.look(observation)
         actions = self._decided(observation) if self._flying else None
         if actions is None:
             actions = held if self._flying and held is not None else np.full(len(observation), COAST, np.intp)
@@ -122,8 +117,11 @@ class OwnPilot:
                 self.version += 1
             return None
 
-    def look(self) -> None:
-        """Look whether the file was saved anew, and load it then; see whether a file that is loading fails."""
+    def look(self, observation: Floats | None = None) -> None:
+        """Look whether the file was saved anew, and load it then; see whether a file that is loading fails.
+
+        Asked for an observation, it flies from its first answer on.
+        """
         now = self._clock()
         try:
             if now - self._looked >= _LOOK:
@@ -133,12 +131,15 @@ class OwnPilot:
                     self._leave_next()
                     self._next, self._until = PilotProcess(self.path), now + LOADING
             if self._next:
-                if self._next.ready():
+                if observation is not None and self._next.ask(observation, self._patience) is not None:
+                    self._take_over()
+                elif self._next.ready():
                     self.ready, self._until = True, now + LOADING
                 elif now > self._until:
                     raise self._next.ended(f"it gave no answer within {LOADING:.0f} seconds")
         except PilotError as error:
-            self._refuse(error)
+            self.problem, self.flies_on = str(error), self._flying is not None
+            self._leave_next()
 
     def close(self) -> None:
         """End its processes."""
@@ -147,23 +148,13 @@ class OwnPilot:
             self._flying.close()
         self._flying = None
 
-    def _try_next(self, observation: Floats) -> None:
-        """Let the file that was saved last fly from its first answer on."""
-        try:
-            if not self._next or self._next.ask(observation, self._patience) is None:
-                return
-        except PilotError as error:
-            self._refuse(error)
-            return
+    def _take_over(self) -> None:
+        """Let the file that was saved last fly."""
         if self._flying:
             self._flying.close()
         self._flying, self._next = self._next, None
         self.ready, self.problem, self._late = True, "", 0
         self.version += 1
-
-    def _refuse(self, error: PilotError) -> None:
-        self.problem, self.flies_on = str(error), self._flying is not None
-        self._leave_next()
 
     def _leave_next(self) -> None:
         if self._next:

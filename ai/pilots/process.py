@@ -34,12 +34,13 @@ class PilotProcess:
     wrong with the file, and once the process has ended. `many` says whether the file has `act_many`, once it is ready.
     """
 
-    many = False
+    many: bool | None = None
 
     def __init__(self, path: Path, kind: str = ACT) -> None:
         context = get_context("spawn")
         self._link, theirs = context.Pipe()
-        self._asked, self._answered = 0, -1  # numbers of questions: that of loading the file is 0
+        self._busy = True  # with loading, then with a question
+        self._given: Any = None  # the last answer
         # No daemon, as such a process may have no children of its own: closed when this is collected, or at the end.
         self._process = context.Process(target=serve, args=(theirs, str(path.absolute()), kind))
         self.close = Finalize(self, _end, (self._process, self._link), exitpriority=1)
@@ -52,18 +53,21 @@ class PilotProcess:
 
     def ready(self, seconds: float = 0.0) -> bool:
         """Whether nothing is under way: the file is loaded, and the last question answered."""
-        until = time.monotonic() + seconds
+        if not self._busy:
+            return True
         try:
-            while self._answered < self._asked:
-                if not self._link.poll(max(0.0, until - time.monotonic())):
-                    return False
-                self._answered, self._given, line, words = self._link.recv()
-                if words:
-                    raise PilotError(CONTROLS.sub(" ", words), line)
-                if not self._answered:
-                    self.many = self._given
+            if not self._link.poll(max(0.0, seconds)):
+                return False
+            self._given, line, words = self._link.recv()
         except (EOFError, OSError) as error:
             raise self.ended() from error
+        self._busy = False
+        if words:
+            if self.many is None:  # it cannot be loaded
+                self.close()
+            raise PilotError(CONTROLS.sub(" ", words), line)
+        if self.many is None:
+            self.many = self._given
         return True
 
     def ask(self, question: Any, seconds: float) -> Any:
@@ -74,11 +78,11 @@ class PilotProcess:
         until = time.monotonic() + seconds
         if not self.ready(seconds):  # one that came too late before
             return None
-        self._asked += 1
         try:
-            self._link.send((self._asked, question))
+            self._link.send(question)
         except OSError as error:
             raise self.ended() from error
+        self._busy = True
         return self._given if self.ready(until - time.monotonic()) else None
 
     def ended(self, words: str = "its process has ended") -> PilotError:

@@ -32,7 +32,7 @@ class Fake:
         return self.does not in ("loading", "late")
 
     def ask(self, observation, seconds):
-        if self.does in ("late", "loading"):
+        if not self.ready():
             return None
         if self.does in ("raises", "dies"):
             self.gone = self.does == "dies"
