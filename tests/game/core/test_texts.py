@@ -160,6 +160,20 @@ def test_a_translation_follows_the_english():
     assert translations.untranslated(merged, now) == ["B", "D"]
 
 
+def test_each_heading_stands_once():
+    lines = (catalogue.LOCALE / f"{catalogue.DOMAIN}.pot").read_text(encoding="utf-8").splitlines()
+    headings = [line for line in lines if line.startswith("# ")]
+    assert len(headings) == len(set(headings)) > 1
+
+
+@pytest.mark.parametrize("language", ["de", "es"])
+def test_a_language_that_is_brought_up_to_date_keeps_its_head(language: str, tmp_path: Path):
+    path = copytree(catalogue.LOCALE, tmp_path / "locale") / language / "LC_MESSAGES" / f"{catalogue.DOMAIN}.po"
+    before = path.read_text(encoding="utf-8").partition("msgctxt")[0]
+    translations.follow(language, tmp_path / "locale")
+    assert path.read_text(encoding="utf-8").partition("msgctxt")[0] == before
+
+
 def test_what_is_filled_in_has_a_name():
     """A translation may need another order."""
     for message in english():

@@ -12,7 +12,7 @@ import pytest
 
 from ai.files.reading import read_json
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import sabotaged
+from ai.training.experiments import SABOTAGES, sabotaged
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
@@ -47,6 +47,10 @@ def test_a_page_of_knobs_leads_to_the_chapters_that_explain_them(train: Driver) 
     train.key(pygame.K_ESCAPE)
     train.frames(1)
     assert train.widget(texts.TRAIN_MORE_KNOBS)
+
+
+def test_every_sabotage_has_its_words():
+    assert texts.SABOTAGES.keys() == texts.SABOTAGE_WHY.keys() == SABOTAGES.keys()
 
 
 # Two runs

@@ -89,7 +89,7 @@ def at_first_sight_there_is_little_to_read_and_to_choose_from(visit: Visit) -> N
     page = visit.written.turn(driver.app.canvas)
     driver.app.draw()
     words = [word for note in page.notes for word in note.text.split() if any(map(str.isalpha, word))]
-    assert len(words) <= MOST_WORDS, f"{len(words)} words: {' '.join(words)}"
+    assert len(words) <= MOST_WORDS, f"{len(words)} words, not {MOST_WORDS}: leave some out of {' '.join(words)}"
 
 
 MOST_WORDS_IN_FLIGHT = 25
@@ -102,7 +102,10 @@ def in_flight_there_is_one_sentence(visit: Visit) -> None:
     words = [word for note in page.notes for word in note.text.split() if any(map(str.isalnum, word))]
     assert not driver.top.waiting
     assert not driver.top.flight.over
-    assert len(words) <= MOST_WORDS_IN_FLIGHT, f"{len(words)} words: {' '.join(words)}"
+    assert len(words) <= MOST_WORDS_IN_FLIGHT, (
+        f"{len(words)} words, not {MOST_WORDS_IN_FLIGHT}: leave some out of {' '.join(words)} "
+        "(FlownFlight._shown names the read-outs)"
+    )
 
 
 def a_craft_hangs_while_its_window_changes(visit: Visit) -> None:

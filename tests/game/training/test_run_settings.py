@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from ai.training.config import PRESETS
-from ai.training.experiments import SABOTAGES, sabotaged
+from ai.training.experiments import sabotaged
 from game.core import texts
 from game.training.library import Library
 from game.training.run import TrainingRun
@@ -132,9 +132,3 @@ def test_a_configuration_from_elsewhere_is_named_after_what_it_began_as(settings
     assert settings.preset == "modern"
     settings.ask(MODERN.changed(preset="somebody's"))
     assert settings.preset == "modern"
-
-
-def test_every_sabotage_has_its_words():
-    for name in SABOTAGES:
-        assert all(texts.SABOTAGES[name])
-        assert texts.SABOTAGE_WHY[name]
