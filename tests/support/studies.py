@@ -21,7 +21,7 @@ def result(number=0, value=1.0, **changes):
     """Return a finished trial of such a design."""
     params = {"learning_rate": 1e-3 * (number + 1), "tau": 0.01 * (number + 1), "double": number % 2 == 0}
     seeds = tuple(
-        SeedResult(seed, (Measurement(200, 0.0, value), Measurement(400, 0.5, value)), value) for seed in (0, 1)
+        SeedResult(seed, (Measurement(200, 0.0, value), Measurement(400, 0.5, value)), value - seed) for seed in (0, 1)
     )
     return Trial(**({"number": number, "params": params, "value": value, "seconds": 1.0, "seeds": seeds} | changes))
 

@@ -61,7 +61,7 @@ def test_each_way_to_crash_is_named_by_the_limit_that_was_broken(subtests):
         ((0, STAND + 0.02, 0, -2.3), Cause.HARD, LIMITS),
         ((0, STAND + 0.02, 0, -1.5), Cause.HARD, replace(LIMITS, touch_speed=1.2)),
         ((0, STAND + 0.02, 2.4, -0.5), Cause.SLIDING, LIMITS),
-        ((0, STAND + 0.02, 1.6, -0.5), Cause.SLIDING, replace(LIMITS, slide_speed=1.2)),
+        ((0, STAND + 0.02, -1.6, -0.5), Cause.SLIDING, replace(LIMITS, slide_speed=1.2)),
         ((0, STAND + 0.3, 0, -0.5, 0.6), Cause.TILTED, LIMITS),
         ((0, STAND, 0, -0.3, np.pi), Cause.HULL, LIMITS),
         ((10, STAND - 0.5, 0, -0.3), Cause.TERRAIN, LIMITS),

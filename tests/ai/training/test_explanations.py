@@ -59,6 +59,8 @@ def test_the_first_landing_to_learn_from_is_told_once_with_its_lesson(monkeypatc
     told = [each for _ in range(300) for each in next(session) if isinstance(each, FirstLanding)]
     (landing,) = told
     assert landing.lesson.flown.outcome == Outcome.CRASHED
+    resumed = type(session)(session.training, None, None)
+    assert not [each for _ in range(60) for each in next(resumed) if isinstance(each, FirstLanding)]
 
 
 def test_a_run_that_is_asked_goes_on_as_one_that_is_not():

@@ -112,8 +112,10 @@ def test_what_stays_of_a_change_leads_back_to_before_it_and_what_was_undone_is_n
     assert rule.name == "changed"
     assert rule.back_to(Curves(run, paid)) == 180_000
     assert rule.remedy(Curves(run, paid)) == {"reward_weights.time": -0.4}
-    run.append(replace(change, decisions=210_000, before=change.after, after=change.before))
+    since = Curves(run, paid).since_change()
+    run.append(replace(change, decisions=215_000, before=change.after, after=change.before, seconds=20.0))
     assert Curves(run, MODERN).blamed() == []
+    assert Curves(run, MODERN).since_change() == pytest.approx(since - 100), "flights"
 
 
 @pytest.mark.parametrize("harder", [False, True])

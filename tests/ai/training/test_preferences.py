@@ -62,16 +62,6 @@ def test_what_is_paid_grows_with_how_far_it_is_known():
     assert before < few < many
 
 
-def test_an_answer_that_is_taken_back_has_not_been_given():
-    taste = answered(10)
-    before = taste.differences.copy(), taste.answers.copy()
-    taste.answer(np.ones(len(SUMS)), FIRST)
-    assert len(taste.answers) == 11
-    taste.restore(taste.differences[:-1], taste.answers[:-1])
-    np.testing.assert_array_equal(taste.differences, before[0])
-    np.testing.assert_array_equal(taste.answers, before[1])
-
-
 def test_what_all_agree_on_is_not_worth_asking():
     told = answered(40).worth_asking(np.array([np.zeros(len(SUMS)), 20 * LIKED, np.eye(len(SUMS))[-1]]))
     assert told.min() > -1e-9
@@ -110,6 +100,9 @@ def test_a_memory_that_is_paid_anew_is_as_if_it_had_been_paid_so_at_once():
     first, second = (memory.transitions.reward[: memory.size] for memory in memories)
     assert len(first) == memories[1].size
     np.testing.assert_allclose(first, second, rtol=1e-5)
+    memories[0].pay(np.eye(len(SUMS))[list(SUMS).index("left")])
+    assert first.sum() == pytest.approx(0.0, abs=1e-4), "to the left in the mirror is to the right"
+    assert first.any()
 
 
 def rng_points(seed):
@@ -201,6 +194,7 @@ def test_answers_given_in_a_row_are_each_learned_from():
     decisions = upbringing.agent.decisions
     for _ in range(2):
         upbringing.answer(FIRST)
+    assert len(upbringing.taste.answers) == 2
     while not upbringing.resting:
         upbringing.advance()
     assert upbringing.agent.decisions == decisions + 2 * bringing_up.EACH

@@ -76,8 +76,9 @@ def test_what_was_paid_otherwise_is_forgotten():
 
 def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
     training, _ = advanced(decisions=2)
-    training.apply_live(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, gradient_steps=3))
-    assert training.config == training.agent.config == SMALL.changed(gradient_steps=3)
+    training.apply_live(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, gradient_steps=3, discount=0.9))
+    assert training.config == training.agent.config == SMALL.changed(gradient_steps=3, discount=0.9)
+    assert training.agent.n_step.discount == 0.9
     assert training.advance().decisions == 24
 
 

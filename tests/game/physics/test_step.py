@@ -67,7 +67,9 @@ def test_the_chosen_axis_gives_the_normal_and_the_next_step_its_figures(subtests
 def test_a_hand_that_pulls_is_part_of_the_step():
     exhibit = EXHIBITS["stack"](EARTH)
     body = exhibit.bodies[-1]  # the ball
-    grip = Grip(body, body.position[0].copy())
+    body.angle = 0.6
+    grip = Grip(body, place := body.position[0] + (0.2, 0.1))
+    assert grip.place(exhibit.poses[body.index]) == pytest.approx(place), "it holds what was gripped"
     grip.target = np.array((3.0, 3.0))
     record = StepRecord(exhibit, grip)
     exhibit.step(grip)

@@ -194,6 +194,7 @@ def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: O
     switch = Switch(game)
     for pace in (1.0, 0.2):
         switch.choose(texts.PACE)
+        switch.press()  # a hand that trembles
         assert context.settings.pace == pytest.approx(pace)
     game = open_game(SettingsScene, "controls")
     game.skip(20)

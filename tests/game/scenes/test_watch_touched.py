@@ -115,12 +115,12 @@ def test_no_hand_puts_it_into_the_ground_or_out_of_sight(watching: Driver):
     watching.key(pygame.K_SPACE)
     for place in ((700, 719), (3, 719), (3, 3), (1279, 3), (1279, 719)):
         drag(watching, hand(watching).middle, place)
+        watching.post(pygame.MOUSEWHEEL, x=0, y=7)  # tilted, its legs reach lower
         x, y = state(watching)[:2]
         env = scene(watching).swarm.env
         assert abs(x) <= env.limits.half_width
         assert env.lowest(x, float(env.angle[0])) <= y <= env.limits.ceiling
         assert 0 < hand(watching).middle[0] < 950
-    watching.post(pygame.MOUSEWHEEL, x=0, y=20)
     check_decision(watching)
 
 

@@ -211,6 +211,7 @@ def test_pages_and_ends_and_the_wheel_scroll_the_list(page: tuple[Driver, Page])
 
 def test_a_click_chooses_and_a_second_one_opens(page: tuple[Driver, Page]):
     game, scene = page
+    scene.list.scroll(-1)
     third = scene.list.box.left + 20, scene.list.baseline(2) - 4
     game.click(third)
     assert scene.log == [2]
