@@ -21,7 +21,7 @@ SETTINGS: Final = ("tutored", "first_flown", "rung", "learnt")  # and fields of 
 
 def put_away(user_dir: Path, settings: Settings) -> Path:
     """Move all progress into a dated folder, whole or not at all; return that folder. Raises OSError."""
-    box = free_path(user_dir, f"progress {datetime.now():%Y-%m-%d}")
+    box = free_path(user_dir, f"progress-{datetime.now():%Y-%m-%d}")
     box.mkdir(parents=True)
     moved = [name for name in FILES if (user_dir / name).exists()]
     try:

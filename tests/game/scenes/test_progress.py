@@ -51,7 +51,7 @@ def test_progress_is_put_away_after_a_question_and_it_is_said_where(open_game: O
     assert files(context.user_dir) == before
     player.choose(texts.PROGRESS_RESET)
     player.choose(texts.PROGRESS_YES)
-    [box] = context.user_dir.glob("progress *")
+    [box] = context.user_dir.glob("progress-*")
     assert str(box) in player.said
     player.frames(3)
     assert (files(context.user_dir), files(box)) == ({}, before)
@@ -83,7 +83,7 @@ def test_a_disk_that_refuses_keeps_everything_where_it_is(
         put_away(context.user_dir, context.settings)
     assert files(context.user_dir) == before
     assert context.settings.learnt == {"neuron": 3}
-    assert [*context.user_dir.glob("progress *")] == []
+    assert [*context.user_dir.glob("progress-*")] == []
 
 
 def test_one_volume_turns_all_others_down_and_mute_turns_all_off():
