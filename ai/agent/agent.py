@@ -42,10 +42,11 @@ from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, Transition, make_replay
 from ai.agent.schedule import importance, learning_rate, target_rate
-from ai.agent.storage import read_agent, save_agent
+from ai.agent.storage import KIND, read_agent, write_agent
 from ai.agent.symmetry import Symmetry
 from ai.environment import Bools, Doubles, Env, Floats, Ints, StepResult
-from ai.nn import NeuralNetwork, Optimizer
+from ai.files.folder import atomic_folder
+from ai.nn import NeuralNetwork
 
 TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
 
@@ -54,8 +55,7 @@ class DeepQAgent:
     """Deep Q-learning agent: it learns the value of each action in each state from its own flights.
 
     The default sizes are the lander's. `action_chances` (actions,) are the chances of random actions, uniform by
-    default. `replay` and `optimizer` are those of the configuration unless others are handed over. All randomness
-    comes from `rng`.
+    default. `replay` is that of the configuration unless another is handed over. All randomness comes from `rng`.
 
     Attributes:
         online: the network that learns.
@@ -79,7 +79,6 @@ class DeepQAgent:
         symmetry: Symmetry | None = None,
         action_chances: Doubles | None = None,
         replay: ReplayBuffer | None = None,
-        optimizer: Optimizer | None = None,
     ) -> None:
         self.num_features, self.num_actions = num_features, num_actions
         self.config = config or AgentConfig()
@@ -88,7 +87,7 @@ class DeepQAgent:
         self.normalizer = Normalizer(num_features) if self.config.normalise_inputs else None
         self.online = build_network(num_features, num_actions, self.config, self.rng)
         self.target = self.online.copy()
-        self.optimizer = optimizer or make_optimizer(self.config)
+        self.optimizer = make_optimizer(self.config)
         if replay is not None:
             self.replay = replay
         self.decisions = self.gradient_steps = 0
@@ -306,7 +305,8 @@ class DeepQAgent:
 
         Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
         """
-        save_agent(self, folder)
+        with atomic_folder(folder, KIND) as temporary:
+            write_agent(self, temporary)
 
     @classmethod
     def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> Self:

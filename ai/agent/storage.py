@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from ai.agent.config import AgentConfig
-from ai.files.folder import NETWORK, OF_A_RUN, FolderKind, atomic_folder, recover_folder
+from ai.files.folder import NETWORK, OF_A_RUN, FolderKind, recover_folder
 from ai.files.reading import count_of, inside, read_arrays, read_json
 from ai.files.schema import check_header
 from ai.nn import NeuralNetwork
@@ -35,14 +35,8 @@ KIND: Final = FolderKind(FORMAT, (*_ALONE.files, *OF_A_RUN, *_ALONE.within(LAST)
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
-def save_agent(agent: DeepQAgent, folder: str | Path) -> None:
-    """Write an agent to a folder, whole or not at all; raises as `DeepQAgent.save` says."""
-    with atomic_folder(folder, KIND) as temporary:
-        write_agent(agent, temporary)
-
-
 def write_agent(agent: DeepQAgent, folder: Path) -> None:
-    """Write an agent's files into a new folder; `save_agent` does so safely. Raises OSError."""
+    """Write an agent's files into a new folder; `DeepQAgent.save` does so safely. Raises OSError."""
     described = {
         "format": FORMAT,
         "version": VERSION,

@@ -137,21 +137,12 @@ def number_of(value: Any, least: float = -math.inf) -> float:
 
 
 def read_array(path: str | Path, shape: tuple[int, ...], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
-    """Return the array of an `.npy` file, which is to have this shape and dtype, in C order.
+    """Return the array of an `.npy` file, which is to have this shape and dtype and finite numbers, in C order.
 
     Raises OSError, or ValueError if it holds another.
     """
-    wanted, name = np.dtype(dtype), Path(path).name
-    try:
-        array = _load(path, math.prod(shape) * wanted.itemsize + _HEADER)
-    except ValueError as error:
-        raise ValueError(f"{name} {error}") from error
-    if not isinstance(array, np.ndarray):
-        raise ValueError(f"{name} holds several arrays")
-    if (array.shape, array.dtype) != (shape, wanted):
-        held = described(array.shape, array.dtype)
-        raise ValueError(f"{name} holds {held}, and should hold {described(shape, wanted)}")
-    return array.copy(order="C")
+    wanted = np.empty(shape, dtype)
+    return array_like(wanted, _load(path, wanted.nbytes + _HEADER), "it")
 
 
 def read_arrays(path: str | Path, most: int) -> dict[str, npt.NDArray[Any]]:
@@ -183,20 +174,11 @@ def _load(path: str | Path, most: int) -> npt.NDArray[Any] | dict[str, npt.NDArr
             raise ValueError("holds no arrays that can be read, or is damaged") from error
 
 
-def array_like(
-    template: npt.NDArray[Any], value: Any, name: str = "an array", *, finite: bool = True
-) -> npt.NDArray[Any]:
-    """Return a copy of an array that has the shape and dtype of another; raises ValueError if not.
-
-    Its numbers must be finite, or else at least be numbers.
-    """
+def array_like(template: npt.NDArray[Any], value: Any, name: str) -> npt.NDArray[Any]:
+    """Return a copy of an array of finite numbers that has the shape and dtype of another; raises ValueError if not."""
     if not isinstance(value, np.ndarray) or (value.shape, value.dtype) != (template.shape, template.dtype):
-        raise ValueError(f"{name} should hold {described(template.shape, template.dtype)}")
-    if value.dtype.kind == "f" and (not np.isfinite(value).all() if finite else np.isnan(value).any()):
+        wanted = brief(f"{template.dtype.name} {list(template.shape)}", 60)
+        raise ValueError(f"{name} should hold {wanted}")
+    if value.dtype.kind == "f" and not np.isfinite(value).all():
         raise ValueError(f"{name} holds numbers that are not finite")
     return value.copy()
-
-
-def described(shape: tuple[int, ...], dtype: np.dtype[Any]) -> str:
-    """Describe an array, as in "float32 [9, 128]"."""
-    return brief(f"{dtype.name} {list(shape)}", 60)

@@ -15,7 +15,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ai.nn.layer import NO_ARRAY, ImageShape, Layer, checked_shape, checked_size, fitting
-from ai.nn.layers import FullyConnectedLayer, ones
+from ai.nn.layers import FullyConnectedLayer, constant
 from ai.nn.parameter import Array
 
 Bools = NDArray[np.bool_]
@@ -67,7 +67,7 @@ class ConvolutionLayer(FullyConnectedLayer):
         """Set the gradients of weights, the sum of windowᵀ E over all windows, and of the bias."""
         weights, bias = self.parameters
         error = np.asarray(output_error, self.dtype, order="F")
-        bias.gradient[...] = error.T.reshape(self.filters, -1).dot(ones(error[..., 0].size, error.dtype))
+        bias.gradient[...] = error.T.reshape(self.filters, -1).dot(constant(error[..., 0].size, 1.0, error.dtype))
         gradient = weights.gradient
         gradient.fill(0)
         for x, y in self._blocks(len(error)):

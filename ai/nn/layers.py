@@ -52,7 +52,7 @@ class FullyConnectedLayer(Layer):
         """Set the gradients of weights, xᵀ E, and bias, Σ E over the batch."""
         weights, bias = self.parameters
         self.input.T.dot(output_error, weights.gradient)
-        ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
+        constant(len(output_error), 1.0, self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
         """Return E Wᵀ, (batch, inputs)."""
@@ -181,7 +181,7 @@ class LayerNormalisation(Layer):
         """Set the gradients of gain, Σ E · centred · inverse, and bias, Σ E over the batch."""
         gain, bias = self.parameters
         self.inverse.T.dot(np.multiply(self.centred, output_error, out=self.scratch), gain.gradient[None])
-        ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
+        constant(len(output_error), 1.0, self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
         """Return D - mean D - centred · inverse² · mean(centred · D), with D = E · stretch."""
@@ -203,7 +203,7 @@ class LayerNormalisation(Layer):
 
     @property
     def _average(self) -> Array:
-        return _constant(self.size, 1 / self.size, self.dtype)
+        return constant(self.size, 1 / self.size, self.dtype)
 
     def initial_value(self, name: str) -> Array:
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
@@ -245,13 +245,9 @@ class DropoutLayer(Layer):
         return self.error
 
 
-def ones(size: int, dtype: Any) -> Array:
-    """Return a vector of ones, to sum rows with: it is kept, and cannot be written to."""
-    return _constant(size, 1.0, dtype)
-
-
 @lru_cache(maxsize=64)
-def _constant(size: int, value: float, dtype: Any) -> Array:
+def constant(size: int, value: float, dtype: Any) -> Array:
+    """Return a vector of one number, to sum rows with: it is kept, and cannot be written to."""
     vector: Array = np.full(size, value, dtype)
     vector.setflags(write=False)
     return vector

@@ -165,14 +165,12 @@ def _named(table: Mapping[str, Callable[..., T]], description: Any) -> T:
 
 
 def _read_array(folder: Path, description: Any, name: str, shape: tuple[int, ...], dtype: str) -> Array:
-    """Return a parameter's array; raises OSError or ValueError if it is not as the layer and the folder say."""
+    """Return a parameter's array; raises ValueError if it is not as the layer and the folder say."""
     entry = description["arrays"][name]
     file = entry["file"]
     if not isinstance(file, str) or Path(file).name != file:
         raise ValueError(f"{name}: {shown(file)} is not a file of this folder")
     if (entry["shape"], entry["dtype"]) != (list(shape), dtype):
         raise ValueError(f"{file} is not said to hold {dtype} {list(shape)}")
-    array: Array = read_array(inside(folder, file), shape, dtype)
-    if not np.isfinite(array).all():
-        raise ValueError(f"{file} holds numbers that are not finite")
-    return array
+    with reading(folder, file):
+        return read_array(inside(folder, file), shape, dtype)

@@ -46,9 +46,9 @@ class Checkpoint:
     """Network that flew at one moment of a run."""
 
     seconds: float
-    decisions: int
+    decisions: Count
     success: float
-    values: Floats  # (parameters,) float32
+    values: Floats = field(default_factory=lambda: np.empty(0, np.float32))  # (parameters,) float32
     normalizer: dict[str, Any] | None = None  # of the observations, as Normalizer.to_json gives it
 
     def agent(self, config: Config) -> DeepQAgent:
@@ -103,20 +103,12 @@ Entry = Measured | Checkpoint | SettingChange | Validation
 
 
 @dataclass(frozen=True)
-class _CheckpointFile:
-    seconds: float
-    decisions: Count
-    success: float
-    normalizer: dict[str, Any] | None
-
-
-@dataclass(frozen=True)
 class _HistoryFile:
     version: int
     stride: Annotated[int, Within(1, MOST)]
     appended: Count
     reward_scale: Annotated[float, Above(0)]
-    checkpoints: Annotated[tuple[_CheckpointFile, ...], Sized(MOST_CHECKPOINTS)]
+    checkpoints: Annotated[tuple[Checkpoint, ...], Sized(MOST_CHECKPOINTS)]
     changes: tuple[SettingChange, ...]
     validations: tuple[Validation, ...]
 
@@ -257,13 +249,9 @@ class History:
     def _restore(self, described: _HistoryFile) -> None:
         self._stride, self._appended, self.reward_scale = described.stride, described.appended, described.reward_scale
         self.setting_changes, self.validations = list(described.changes), list(described.validations)
-        for saved in described.checkpoints:
-            if saved.normalizer is not None:
-                Normalizer(len(saved.normalizer["mean"])).load(saved.normalizer)  # raises for one that makes no sense
-            nothing = np.empty(0, np.float32)
-            self.checkpoints.append(
-                Checkpoint(saved.seconds, saved.decisions, saved.success, nothing, saved.normalizer)
-            )
+        self.checkpoints = list(described.checkpoints)  # without their networks, which are in a file of their own
+        for scale in (each.normalizer for each in self.checkpoints if each.normalizer is not None):
+            Normalizer(len(scale["mean"])).load(scale)  # raises for one that makes no sense
 
     def _restore_points(self, lines: list[str]) -> None:
         """Take over the lines of a table; raises ValueError where it makes no sense."""

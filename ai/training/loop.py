@@ -24,6 +24,7 @@ from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.environment import Env, Floats, StepResult
 from ai.files.reading import count_of, inside, number_of, read_json
+from ai.files.schema import read_as
 from ai.lander.rewards import REWARDS
 from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Measured, Run
@@ -318,7 +319,7 @@ class Training(Run):
         if described["best"] is not None:
             if best.network.values.shape != self.agent.network.values.shape:
                 raise ValueError("the best network and the last one are of different sizes")
-            self.best, self.best_network = task.read_score(described["best"]), _network(best)
+            self.best, self.best_network = read_as(task.score, described["best"]), _network(best)
         self.episodes, self.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         self.observation = self.env.reset()  # where flights begin depends on the landings
         self.seconds = float(number_of(described["seconds"], 0))

@@ -85,8 +85,3 @@ class Refused:
 
     command: Command
     problem: str
-
-
-def problem_of(error: Exception) -> str:
-    """Return an error in the words of a message: those of the system for a file, else its own."""
-    return getattr(error, "strerror", None) or str(error)

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from ai.files.folder import atomic_folder
+from ai.files.reading import problem_in
 from ai.nn import ModelFormatError
 from ai.nn.storage import reading
 from ai.run import TRAINING_FILE, Run
-from ai.training.messages import Saved, problem_of
+from ai.training.messages import Saved
 from ai.training.state import GOING_ON, read_state, write_state
 
 if TYPE_CHECKING:
@@ -169,5 +170,5 @@ def _outcome(folder: Path, writing: Future[dict[str, Any]]) -> Saved:
     try:
         described = writing.result()
     except (OSError, ValueError) as error:
-        return Saved(folder, problem_of(error))
+        return Saved(folder, problem_in(error))
     return Saved(folder, "", described.get("test"), described.get("kept_epoch"))

@@ -15,9 +15,10 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
+from ai.files.reading import problem_in
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
-from ai.training.messages import Command, Refused, RunStarted, problem_of
+from ai.training.messages import Command, Refused, RunStarted
 from ai.training.run import Keeper
 from ai.training.run import resume as resume_run
 
@@ -144,7 +145,7 @@ class Session(ABC, Generic[R]):
         try:
             self.commands[name](self, *arguments)
         except (OSError, ValueError, FloatingPointError) as error:
-            self.messages.append(Refused(command, problem_of(error)))
+            self.messages.append(Refused(command, problem_in(error)))
 
     def record(self, entry: Entry) -> None:
         """Add an entry to the history, and tell it."""

@@ -15,7 +15,6 @@ import numpy as np
 from ai.agent.schedule import linear
 from ai.agent.symmetry import Symmetry
 from ai.environment import Doubles, Env, Ints, T
-from ai.files.schema import read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import Pilot
@@ -97,10 +96,6 @@ class Task(ABC, Generic[S]):
 
         A decision is held for as many steps as in training, unless `frame_skip` says otherwise.
         """
-
-    def read_score(self, values: Any) -> S:
-        """Read what a score's `to_json` gave; raises ValueError for anything else."""
-        return read_as(self.score, values)
 
 
 @dataclass(frozen=True)

@@ -141,8 +141,9 @@ def test_an_array_is_of_the_shape_and_kind_that_is_asked_for(tmp_path, subtests)
     path = tmp_path / "a.npy"
     for array, said in (
         (np.zeros((2, 3), np.float32), ""),
-        (np.zeros((3, 2), np.float32), r"holds float32 \[3, 2\], and should hold float32 \[2, 3\]"),
-        (np.zeros((2, 3)), "holds float64"),
+        (np.zeros((3, 2), np.float32), r"should hold float32 \[2, 3\]"),
+        (np.zeros((2, 3)), "should hold float32"),
+        (np.full((2, 3), np.nan, np.float32), "not finite"),
         (np.array([[None] * 3] * 2), "no arrays that can be read"),
     ):
         np.save(path, array)

@@ -7,6 +7,7 @@ import pytest
 
 from ai.agent.schedule import linear
 from ai.environment import finished
+from ai.files.schema import read_as
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.training.config import PRESETS, Config
@@ -101,7 +102,7 @@ def test_who_is_taught_hard_starts_is_chosen_by_them_too():
     assert taught.hard
     assert taught.hard > 0.5
     assert nothing.hard == nothing.success == 0.0
-    assert LanderTask(Config()).read_score(taught.to_json()) == taught
+    assert read_as(LanderTask.score, taught.to_json()) == taught
 
 
 def test_more_landings_count_before_quicker_ones_where_hard_starts_were_flown():
