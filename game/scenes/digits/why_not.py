@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -43,7 +44,7 @@ class WhyNotTab:
     def __init__(self, classifier: DigitClassifier, image: Image, build: Callable[[], None]) -> None:
         self._classifier, self._first, self._build = classifier, image, build
         self._painted, self._map = Picture(), Picture(SIGNED)
-        self.asked = best_two(classifier.predict(image)[0])[1]
+        self.asked = -1  # none yet
         self._set_image(image)
 
     def ask(self, digit: int) -> None:
@@ -62,6 +63,9 @@ class WhyNotTab:
     def _set_image(self, image: Image) -> None:
         self.image = image
         self.probabilities = self._classifier.predict(image)[0]
+        answer, second = best_two(self.probabilities)
+        if self.asked in (-1, answer):  # what it reads is not to be asked about
+            self.asked = second
         try:
             self.contrast: Contrast | None = Contrast(self._classifier, image)
         except ValueError:
@@ -81,16 +85,9 @@ class WhyNotTab:
             scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
             self.says = visible(np.where(contrast.image > 0, -taken, put) / scale)
 
-    def _change(self, ink: int) -> None:
-        """Take the ink away that is in the asked digit's way (0), or put the ink that it lacks (1)."""
-        for change in self.changes:
-            if change.ink == ink and self.contrast:
-                self._set_image(self.contrast.changed(change.row, change.column, ink))
-                self._build()
-                return
-
-    def _restore(self) -> None:
-        self._set_image(self._first)
+    def _show(self, image: Image) -> None:
+        """Show the digit with other ink, or as it was."""
+        self._set_image(image)
         self._build()
 
     # Rows
@@ -99,16 +96,18 @@ class WhyNotTab:
         left, right = panel.beside((44, 60), least=170.0, apart=32.0)
         answer, evidence = right.beside((22, 33), least=130.0)
         left.picture(lambda width: min(width, _DIGIT), self._draw_image)
-        left.words([
-            (texts.WHY_NOT_TAKE_IT, lambda: self._change(0)),
-            (texts.WHY_NOT_PUT_IT, lambda: self._change(1)),
-            (texts.WHY_NOT_UNDO, self._restore),
-        ])  # fmt: skip
+        images = [(texts.WHY_NOT_UNDO, self._first)]
+        if contrast := self.contrast:
+            words = texts.WHY_NOT_TAKE_IT, texts.WHY_NOT_PUT_IT
+            images += [(words[each.ink], contrast.changed(each.row, each.column, each.ink)) for each in self.changes]
+        left.words([(word, partial(self._show, image)) for word, image in images])
         best = int(self.probabilities.argmax())
         answer.text(texts.WHY_NOT_READS.format(digit=best, percent=certainty(float(self.probabilities[best]))))
         answer.gap()
         answer.widget(DigitBars(self.ask, self.asked)).values = self.probabilities.tolist()
-        if (contrast := self.contrast) is None:
+        if self.changes:
+            answer.aside(texts.WHY_NOT_SCORE)
+        if contrast is None:
             evidence.text(texts.WHY_NOT_STRANGE, colour=MUTE)
         elif contrast.left:
             evidence.text(lambda: texts.WHY_NOT_MEASURING.format(left=contrast.left), tabular=True)

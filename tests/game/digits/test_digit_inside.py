@@ -190,11 +190,24 @@ def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, class
     assert top.asked == 7
     take = top.changes[0]
     why_not.press_on(texts.WHY_NOT_TAKE_IT)
+    labels = [widget.label for widget in why_not.form.widgets]
+    assert texts.WHY_NOT_PUT_IT not in labels, "while it measures"
     assert top.image.sum() < nine.sum()
     assert classic.predict(top.image)[0][7] > classic.predict(nine)[0][7]
     assert top.contrast.scores[7] == pytest.approx(take.after, abs=1e-4)
     why_not.press_on(texts.WHY_NOT_UNDO)
     np.testing.assert_array_equal(top.image, nine)
+
+
+def test_what_it_reads_by_now_is_not_asked_about(why_not: Driver):
+    top = measured(why_not)
+    first, asked = top.contrast.answer, top.asked
+    while top.contrast.answer == first:
+        change = max(top.changes, key=lambda each: each.after)
+        why_not.press_on((texts.WHY_NOT_TAKE_IT, texts.WHY_NOT_PUT_IT)[change.ink])
+        measured(why_not)
+    assert top.contrast.answer == asked
+    assert top.asked != asked
 
 
 def test_what_is_said_of_ink_is_true(why_not: Driver, classic, monkeypatch):
@@ -229,11 +242,10 @@ def test_the_map_says_what_is_for_the_asked_digit_and_what_is_for_the_answer(why
 
 def test_its_own_answer_is_not_asked_about(why_not: Driver, written: list[str]):
     why_not.key(pygame.K_9)
-    top = measured(why_not)
+    measured(why_not)
     assert texts.WHY_NOT_SAME in " ".join(written)
-    image = top.image
-    why_not.press_on(texts.WHY_NOT_TAKE_IT)
-    assert top.image is image
+    labels = [widget.label for widget in why_not.form.widgets]
+    assert texts.WHY_NOT_TAKE_IT not in labels, "nothing can be pressed that would do nothing"
 
 
 def test_a_network_that_cannot_be_asked_says_so(open_game: Open, context: Context, nine, monkeypatch):
