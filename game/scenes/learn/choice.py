@@ -21,7 +21,7 @@ from game.core.catalogue import capital
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import INK, NET, NIGHT1, SMALL
+from game.drawing.tokens import INK, NET, NIGHT1
 from game.explain.figures import points
 from game.explain.tables import Line, table
 from game.flight import networks
@@ -152,9 +152,8 @@ class ChoiceChapter(Chapter):
         self.tried, self.changed = False, True
 
     def controls(self, column: Column) -> None:
-        for action, name in enumerate(ACTION_NAMES):
-            colour, press = NET if action == self.model.best else INK, partial(self.begin_with, action)
-            column.button(capital(texts.said(name)), press, size=SMALL + 1, colour=colour)
+        names = [capital(texts.said(name)) for name in ACTION_NAMES]
+        column.words([(name, partial(self.begin_with, action)) for action, name in enumerate(names)], colour=INK)
         column.button(texts.LEARN_CHOICE_NEXT, self.turn)
 
     def begin_with(self, action: int) -> None:
@@ -173,7 +172,7 @@ class ChoiceChapter(Chapter):
                 value=points(float(self.model.values[action]), 1),
                 came=points(came.points, 1),
             )
-            for action, came in self.model.results.items()
+            for action, came in list(self.model.results.items())[-2:]  # all stand in the table
         )
 
     def below(self, column: Column) -> None:

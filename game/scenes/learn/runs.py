@@ -239,7 +239,8 @@ class TargetChapter(DuelChapter):
     def why(self) -> str:
         (usual, other), (least, peak) = map(percent, self.landed), map(self.figure, self.peaks)
         done = self.states[-1][0].decisions  # the values go on while this stands there
-        return texts.LEARN_TARGET_WHY.format(done=done, peak=peak, least=least, usual=usual, other=other)
+        name = self.names()[self.flown + 1]
+        return texts.LEARN_TARGET_WHY.format(done=done, name=name, peak=peak, least=least, usual=usual, other=other)
 
     def caption(self, state: SmallState) -> str:
         return texts.LEARN_TARGET_EXPECTS.format(points=self.figure(state.value))

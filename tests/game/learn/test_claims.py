@@ -6,6 +6,7 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
 from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
+from ai.lander.spawns import CURRICULA
 from ai.training.config import PRESETS, Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun
 from game.core import texts
@@ -55,13 +56,16 @@ def test_what_the_shipped_network_was_paid_for_is_what_chapter_6_says():
         assert 80 < way < 120, f"the way of {seed}, {spawn}, {decisions} pays about 100"
 
 
-def test_modern_is_what_chapters_5_and_7_say():
+def test_modern_is_what_chapters_5_7_and_9_say():
     modern, paid = PRESETS["modern"], pay.config_of(PAYS["landing"])
     assert modern.layer_normalisation
     assert modern.fly_target
     assert not modern.target_judges
     same = ("batch_size", "n_step", "target_judges", "double", "hidden", "layer_normalisation", "discount")
     assert [getattr(paid, name) for name in same] == [getattr(modern, name) for name in same]
+    stages = CURRICULA[modern.spawn].stages
+    assert f"until {stages[1][0]:,} have landed" in texts.LEARN["daring"]["why"]
+    assert f"{DARING[1]:.0%}".replace("%", " %") in texts.LEARN["daring"]["task"]
     assert f"{BOUND:g}" in texts.LEARN_TARGET_WHY
     assert f"latest {KEPT[1]}" in texts.LEARN["memory"]["task"]
     assert f"draws {SMALL_RUN.batch_size} " in texts.LEARN["memory"]["lead"]

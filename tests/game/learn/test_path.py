@@ -183,3 +183,16 @@ def test_controls_hold_still_and_the_way_on_stays_in_sight_while_a_page_grows(op
     driver.frames(2)
     assert scene.panel.overflows
     assert texts.LEARN_TO_CHAPTER in driver.hints()
+
+
+def test_what_its_six_tries_have_shown_leaves_chapter_6_its_title(open_game: Open):
+    driver = open_game(ChapterScene, "choice")
+    driver.resize((1280, 720))
+    driver.top.begin(1)
+    model = driver.top.chapter.model
+    for action in range(len(model.values)):
+        model.begin_with(action)
+        driver.wait(lambda: model.over)
+    driver.frames(5)
+    assert driver.top.came is not None
+    assert driver.top.panel.scrolled == 0
