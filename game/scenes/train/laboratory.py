@@ -72,14 +72,10 @@ class Laboratory:
         healthy, other = Curves(run.history, run.config), Curves(twin.history, twin.config)
         # Another end than a network that diverged says nothing of the experiment.
         failed = DIVERGED in twin.problem
-        self.came = verdict(healthy, other, failed=failed)
-        self._figures = (
-            twin.problem
-            if failed
-            else texts.LAB_FIGURES_THEN.format(
-                count=int(twin.history["decisions"][-1]), other=100 * other.landed(), healthy=100 * healthy.landed()
-            )
+        landed = texts.LAB_FIGURES_THEN.format(
+            count=int(twin.history["decisions"][-1]), other=100 * other.landed(), healthy=100 * healthy.landed()
         )
+        self.came, self._figures = verdict(healthy, other, failed=failed), twin.problem if failed else landed
 
     # Pages
 
@@ -136,13 +132,12 @@ class Laboratory:
             column.text(f"{self._figures} {right}", size=SMALL, colour=NET)
             why = texts.SABOTAGE_WHY[self.sabotage]
             column.text(texts.LAB_NOT_MISSED.format(why=why) if self.came == "most" else why, size=SMALL)
-        else:
-            column.text(lambda: twin.problem or texts.LAB_TOO_EARLY, size=SMALL, colour=HUMAN)
-        if self.came:
             names = list(SABOTAGES)
             following = names[(names.index(self.sabotage) + 1) % len(names)]
             words = texts.LAB_NEXT.format(name=texts.SABOTAGES[following][0])
             column.button(words, partial(self._ask, following), colour=HUMAN)
+        else:
+            column.text(lambda: twin.problem or texts.LAB_TOO_EARLY, size=SMALL, colour=HUMAN)
         column.words([(texts.BACK, self.close), (texts.LAB_END, self.end)])
 
 

@@ -111,7 +111,8 @@ class LanderView(View):
         share = 100 * run.history["success_rate"][row]
         if self.moment is None and self.scene.landed and self.scene.landed[0] is not None:
             share = self.scene.landed[0]
-        return Status(title, line, "" if np.isnan(share) else f"{share:.0f}", landed)
+        halves = run.twin and not self.fills  # each says its own
+        return Status(title, line, "" if np.isnan(share) or halves else f"{share:.0f}", landed)
 
     @property
     def beside(self) -> Beside | None:
@@ -240,7 +241,8 @@ class LanderView(View):
         for part in (self.swarms, self.rewind, self.inside):
             part.clear()
         self.advice.adviser.reset()
-        self.offers = 0
+        if self.offers:
+            self._fly_on()
 
     # What can be done
 
@@ -249,10 +251,14 @@ class LanderView(View):
         run, settings = self.run, self.context.settings
         if run.first_landing and not settings.lesson_offered and run.state is WorkerState.RUNNING:
             self.offers, settings.lesson_offered = _OFFERED, True
+            run.set_pace(PACES[0])  # or all would land before it is read
             self.context.apply_settings()
             self.scene.build()
             self.scene.form.focus(next(each for each in self.scene.form.widgets if each.label == texts.LESSON_LOOK))
-        self.offers = max(self.offers - 1, 0) if run.alive else 0
+        elif self.offers > 1 and run.alive:
+            self.offers -= 1
+        elif self.offers:
+            self._fly_on()
 
     def _look(self) -> Transition:
         assert self.run.first_landing is not None
@@ -261,6 +267,7 @@ class LanderView(View):
 
     def _fly_on(self) -> None:
         self.offers = 0
+        self.scene.set_pace(0 if self.context.settings.slow_runs else 1)
 
     def _ask_why(self) -> None:
         """Ask for the lesson of the chosen lander, or of the one that explores least, as the run is now."""

@@ -82,6 +82,7 @@ def test_at_the_first_landing_it_offers_once_to_stop_and_look(
     scene, run = driver.top, driver.top.run
     scene.knobs.ask(SMALL)
     learn(driver, 5)
+    scene.set_pace(1)
     at = run.swarm_state.decisions
     scene.view.lessons.ask(2)
     driver.wait(lambda: isinstance(driver.top, LessonScene))
@@ -91,6 +92,8 @@ def test_at_the_first_landing_it_offers_once_to_stop_and_look(
     run.first_landing = FirstLanding(lesson)
     driver.frames(2)
     assert driver.form.focused.label == texts.LESSON_LOOK, "one key"
+    assert driver.choice(texts.TRAIN_PACES[0]).index == 0, "so that not all land before it is read"
+    assert not driver.app.context.settings.slow_runs, "of this run, for now"
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: isinstance(driver.top, LessonScene))
     assert driver.top.lesson is lesson
@@ -99,6 +102,11 @@ def test_at_the_first_landing_it_offers_once_to_stop_and_look(
     driver.wait(lambda: run.swarm_state.decisions > at)
     assert texts.LESSON_LOOK not in [each.label for each in driver.form.widgets]
     assert driver.app.context.settings.lesson_offered, "never again"
+    driver.app.context.settings.lesson_offered = False
+    driver.frames(2)
+    driver.press_on(texts.LESSON_FLY_ON)
+    driver.frames(2)
+    assert driver.choice(texts.TRAIN_PACES[0]).index == 1, "as fast as before"
 
 
 def test_what_was_left_without_a_name_goes_on_under_its_own_settings(

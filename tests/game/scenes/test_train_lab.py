@@ -150,6 +150,8 @@ def test_the_lab_asks_for_a_guess_flies_both_and_goes_on_with_the_run(train: Dri
     train.wait(lambda: len(scene.run.twin.history) >= 2 and len(scene.run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
+    assert scene.status.line, "it is told how far they are"
+    assert not scene.status.figure, "each half tells its own, by its name"
     train.press_on(texts.BACK)
     train.frames(1)
     train.press_on(texts.TRAIN_EXPERIMENTS)
