@@ -81,17 +81,12 @@ def test_without_assist_every_action_is_the_persons_and_with_it_bad_ones_are_cha
     assert (flight.env.actions[0], flight.choice.overridden, flight.flown_by) == (MAIN, True, StickHolder.NETWORK)
 
 
-def test_hands_off_is_the_networks_and_no_override():
+def test_hands_off_is_the_networks_and_no_override_and_a_tap_of_one_step_is_heard_and_let_go_at_once():
     flight = shared(assist=0.1)
-    flight.step()
-    assert (flight.env.actions[0], flight.choice.overridden, flight.flown_by) == (MAIN, False, StickHolder.NETWORK)
-    assert flight.share == 0.0
-
-
-def test_a_tap_of_one_step_is_heard_at_once_and_let_go_at_once():
-    flight = shared()
     for _ in range(2 * DECISION_STEPS + 1):
         flight.step()
+    assert (flight.env.actions[0], flight.choice.overridden, flight.flown_by) == (MAIN, False, StickHolder.NETWORK)
+    assert flight.share == 0.0
     flight.step(KEYS[LEFT])
     assert flight.env.actions[0] == LEFT
     flight.step()

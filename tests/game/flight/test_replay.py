@@ -194,9 +194,7 @@ def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, redu
 @pytest.fixture
 def book(open_game: Open, context: Context) -> Driver:
     records = Records(context.user_dir)
-    fall, landing = begun(5), scripted()
-    while not fall.over:
-        fall.step()
+    fall, landing = fly_out(begun(5)), scripted()
     records.keep(landing, NOON, alone=True)
     records.keep(fall, NOON + 60, alone=True)
     driver = open_game(LogbookScene)

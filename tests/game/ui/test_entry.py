@@ -112,15 +112,6 @@ def test_a_pad_takes_the_suggestion_and_escape_and_b_leave_it_as_it_was(page: tu
     assert game.top is scene
 
 
-def test_a_text_does_not_become_longer_than_allowed_wherever_it_is_written(page: tuple[Driver, Page]):
-    game, scene = page
-    game.key(pygame.K_RETURN)
-    write(game, "0123456789")
-    game.key(pygame.K_HOME)
-    write(game, "abcd")
-    assert scene.entry.text == "ab0123456789"
-
-
 def test_the_space_that_begins_it_is_not_written_and_nothing_is_not_accepted(page: tuple[Driver, Page]):
     game, scene = page
     pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_SPACE, mod=0, unicode=" ", scancode=0))
@@ -157,6 +148,7 @@ def test_keys_edit_the_text_at_its_caret_and_never_beyond_its_limit(page: tuple[
         ((home, back, right, delete, delete), "a", "Maern 3"),
         ((left, left), "/?e", "Moderne 3"),
         ((end, right), "abcdefgh", "Modern 3abcd"),
+        ((home,), "abcdefgh", "abcdModern 3"),
     ):
         scene.entry.begin()
         game.frames(1)
