@@ -241,4 +241,4 @@ def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
         return texts.DIGITS_FIX_HOW, ""
     before, now = map(certainty, fixed.probability)
     first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
-    return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
+    return first, texts.DIGITS_FIX_COST.format(before=100 * fixed.accuracy[0], after=100 * fixed.accuracy[1])
