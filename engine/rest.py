@@ -48,17 +48,17 @@ class Rest:
 
     def wake_disturbed(self, state: BodyState, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
-        if self._allowed and state.force.any():
-            self._still[state.force.any(axis=2)] = 0  # what is pushed is not still
+        if not self._allowed:
+            return
+        pushed = state.force.any(axis=2)
+        self._still[pushed] = 0  # what is pushed is not still
         if self.awake is None:
             return
         pose, velocity, active = self._seen
-        now = state.pose, state.velocity, state.active
-        if not state.force.any() and all(map(np.array_equal, self._seen, now)):
-            return
-        differs = (state.pose != pose) | (state.velocity != velocity) | (state.force != 0)
-        disturbed = differs.any(axis=2) | (state.active != active)
-        self.wake(disturbed, contacts)
+        moved = (state.pose != pose) | (state.velocity != velocity)
+        disturbed = pushed | moved.any(axis=2) | (state.active != active)
+        if disturbed.any():
+            self.wake(disturbed, contacts)
 
     def wake_touched(self, found: Contacts | None, contacts: Contacts | None) -> bool:
         """Wake sleeping bodies that this step has `found` to be touched; return whether there were any."""

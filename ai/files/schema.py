@@ -52,13 +52,6 @@ class Within(Rule):
         super().__init__(lambda value: low <= value <= high, f"does not lie between {low:,} and {high:,}")
 
 
-class Above(Rule):
-    """Allows numbers above `low`."""
-
-    def __init__(self, low: float) -> None:
-        super().__init__(lambda value: value > low, f"is not above {low:,}")
-
-
 class Sized(Rule):
     """Allows texts and lists of some lengths."""
 

@@ -55,8 +55,4 @@ class GymLander(gymnasium.Env[Floats, np.int64]):
 
 
 if LANDER_ID not in gymnasium.registry:
-    gymnasium.register(
-        LANDER_ID,
-        entry_point="ai.training.gym_lander:GymLander",
-        reward_threshold=170.0,
-    )
+    gymnasium.register(LANDER_ID, entry_point="ai.training.gym_lander:GymLander", reward_threshold=170.0)

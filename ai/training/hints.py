@@ -49,10 +49,6 @@ def _crashes(run: Curves) -> bool:
     return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("success_rate") <= 0.1
 
 
-def _small_memory(run: Curves) -> bool:
-    return run.config.replay_size < 8 * run.config.batch_size
-
-
 def _overfed(run: Curves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
@@ -129,7 +125,8 @@ RULES: Final = (
     HintRule("changed", lambda run: bool(_as_before(run)), _as_before, _before("reward_weights.")),
     HintRule("target_stands", _target_stands, _nearer_target, of_settings=True),
     HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, _for_crashes),  # "still": never landed
-    HintRule("small_memory", _small_memory, _more_memory, of_settings=True),
+    HintRule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory,
+             of_settings=True),
     HintRule("overfed", _overfed, _fewer_steps, of_settings=True),
     HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
 )  # fmt: skip

@@ -19,7 +19,7 @@ from ai.agent.normalizer import Normalizer
 from ai.digits.training import DigitProgress
 from ai.environment import Doubles, Floats
 from ai.files.reading import MOST, inside, problem_in, read_arrays, read_json, read_text
-from ai.files.schema import Above, Count, Sized, Within, read_as
+from ai.files.schema import Count, Sized, Within, read_as
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
 from ai.run import Measured
@@ -107,7 +107,7 @@ class _HistoryFile:
     version: int
     stride: Annotated[int, Within(1, MOST)]
     appended: Count
-    reward_scale: Annotated[float, Above(0)]
+    reward_scale: Annotated[float, Within(1e-4, 1)]
     checkpoints: Annotated[tuple[Checkpoint, ...], Sized(MOST_CHECKPOINTS)]
     changes: tuple[SettingChange, ...]
     validations: tuple[Validation, ...]

@@ -5,12 +5,12 @@ from typing import Annotated, Any
 
 import pytest
 
-from ai.files.schema import Above, OneOf, Share, Sized, Within, check_header, read_as, sound_fields
+from ai.files.schema import OneOf, Share, Sized, Within, check_header, read_as, sound_fields
 
 
 @dataclass(frozen=True)
 class Wheel:
-    radius: Annotated[float, Above(0)]
+    radius: Annotated[float, Within(0.1, 9)]
     spokes: Annotated[int, Within(3, 60)] = 32
 
 
@@ -45,7 +45,7 @@ def test_what_is_wrong_is_named_with_its_place(subtests):
         ({"name": "x" * 9}, "not a length of 1 to 8"),
         ({"wheels": {}}, "wheels: {} is no list"),
         ({"wheels": [1]}, "wheels: 0: 1 is no table"),
-        ({"wheels": [{"radius": 0}]}, "wheels: 0: radius: 0.0 is not above 0"),
+        ({"wheels": [{"radius": 0}]}, "wheels: 0: radius: 0.0 does not lie between 0.1 and 9"),
         ({"wheels": [{"radius": 1}, {}]}, "wheels: 1: radius is missing"),
         ({"wheels": [{"radius": 1, "spokes": 2}]}, "wheels: 0: spokes: 2 does not lie between 3 and 60"),
         ({"wheels": [{"radius": 1, "spokes": 32.0}]}, "no whole number"),
