@@ -157,7 +157,11 @@ def _as(hint: Any, value: Any) -> Any:
             rule(value)
         return value
     if origin in (Union, UnionType):
-        return _as_any([kind for kind in inner if value is None or kind is not NoneType], value)
+        *others, last = [kind for kind in inner if value is None or kind is not NoneType]
+        for kind in others:
+            with suppress(ValueError):
+                return _as(kind, value)
+        return _as(last, value)  # which says what is wrong
     if origin is tuple:
         return _as_tuple(inner, value)
     if origin is dict:
@@ -176,14 +180,6 @@ def _as_plain(kind: Any, value: Any) -> Any:
     if type(value) is not kind:
         raise ValueError(f"{shown(value)} is {_PLAIN[kind]}")
     return value
-
-
-def _as_any(kinds: list[Any], value: Any) -> Any:
-    """Return a value as one of these types has it, or raise what is wrong with it for the last."""
-    for kind in kinds[:-1]:
-        with suppress(ValueError):
-            return _as(kind, value)
-    return _as(kinds[-1], value)
 
 
 def _as_tuple(kinds: tuple[Any, ...], value: Any) -> tuple[Any, ...]:

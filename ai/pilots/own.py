@@ -31,8 +31,10 @@ _LOOK: Final = 0.2  # seconds between two looks at the file
 class _Alone:
     """A file as it is now, loaded for work that nobody watches; everything raises PilotError."""
 
-    def __init__(self, path: Path, kind: str) -> None:
-        self._process = PilotProcess(path, kind)
+    kind = ACT
+
+    def __init__(self, path: Path) -> None:
+        self._process = PilotProcess(path, self.kind)
         self.close = self._process.close
         if not self._process.ready(LOADING):
             raise self._process.ended(f"it was not loaded after {LOADING:.0f} seconds")
@@ -46,9 +48,6 @@ class _Alone:
 class MeasuredPilot(_Alone):
     """The pilot in a file as it is now, for measuring: `act` raises PilotError, and waits for its answers."""
 
-    def __init__(self, path: Path) -> None:
-        super().__init__(path, ACT)
-
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
         piece = len(observation) if self._process.many else _PIECE
@@ -59,8 +58,7 @@ class MeasuredPilot(_Alone):
 class OwnPay(_Alone):
     """The pay in a file as it is now, for `LanderEnv(pay=…)`; raises PilotError where the file fails."""
 
-    def __init__(self, path: Path) -> None:
-        super().__init__(path, PAY)
+    kind = PAY
 
     def __call__(self, before: Situation, after: Situation) -> Floats:
         """Return what a decision earns, (n,)."""
