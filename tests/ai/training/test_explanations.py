@@ -56,7 +56,7 @@ def test_the_first_landing_to_learn_from_is_told_once_with_its_lesson(monkeypatc
     # So small a run lands too seldom: what it does when it crashes stands for a landing.
     monkeypatch.setattr(lander_session, "Outcome", SimpleNamespace(LANDED=Outcome.CRASHED))
     session = run()
-    told = [each for _ in range(300) for each in next(session) if isinstance(each, FirstLanding)]
+    told = [each for _ in range(240) for each in next(session) if isinstance(each, FirstLanding)]
     (landing,) = told
     assert landing.lesson.flown.outcome == Outcome.CRASHED
     resumed = type(session)(session.training, None, None)

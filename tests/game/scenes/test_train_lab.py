@@ -87,8 +87,9 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     run = beside.top.run
     os.kill(run.twin._worker.process_id, signal.SIGKILL)
     beside.wait(lambda: run.twin.state is WorkerState.FAILED)
-    beside.wait(lambda: len(run.history) > len(run.twin.history) + 1)
-    beside.top.view.rewind.go_to(float(run.history["decisions"][-2]))
+    before = run.turns
+    beside.wait(lambda: run.turns > before + 3 * AHEAD and len(run.history) > len(run.twin.history))
+    beside.top.view.rewind.go_to(float(run.history["decisions"][-1]) - 1)  # farther than the twin came
     beside.frames(2)
     assert run.state is WorkerState.RUNNING
     assert "SIGKILL" in run.twin.problem
