@@ -67,7 +67,7 @@ class LearnScene(PanelScene):
         right.gap()
         self._describe_own(right)
         left.gap()
-        left.button(texts.LEARN_PHYSICS, partial(push, "physics"), texts.LEARN_PHYSICS_ASIDE)
+        left.button(texts.LEARN_PHYSICS, partial(push, "physics"))
 
     def _describe_own(self, column: Column) -> None:
         """Add what to do with a network of one's own: each leads to where it is done, and is ticked once it was."""

@@ -85,7 +85,6 @@ class Laboratory:
 
     def _picks(self, column: Column) -> None:
         column.text(texts.TRAIN_EXPERIMENTS, size=TITLE)
-        column.aside(texts.LAB_INTRODUCED)
         for name in SABOTAGES:
             word, what = texts.SABOTAGES[name]
             column.button(word, partial(self._ask, name), what, colour=INK)
