@@ -321,8 +321,8 @@ class LanderEnv:
             judge(self, flying)
             left -= 1
 
-    def glide(self, actions: Ints) -> Floats:
-        """Fly one decision in every slot without collisions; return the observations, (n, 9).
+    def glide(self, actions: Ints) -> None:
+        """Fly one decision in every slot without collisions.
 
         For looking ahead: the same as `step`, bit for bit, as long as nothing touches, but without outcomes and
         rewards, and `actions` (n,) are not checked.
@@ -331,10 +331,9 @@ class LanderEnv:
         flying = self.outcome == FLYING
         if self._free and flying[0]:
             self._free.fly(self.frame_skip, solid=False)
-            return self.observe()
+            return
         for _ in range(self.frame_skip):
             self._move(flying, touching=False)
-        return self.observe()
 
     def _move(self, flying: Bools, touching: bool = True) -> None:
         """Fly one physics step; without `touching`, nothing collides."""

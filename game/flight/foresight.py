@@ -53,8 +53,8 @@ class Preview:
             if self._arrived():
                 self.path, self._places = np.array(self._places), []
                 continue
-            seen = ahead.observe_for(self._policy)
-            ahead.glide(self._policy.act(seen, held=ahead.actions) if self._policy else coasts)
+            policy = self._policy
+            ahead.glide(policy.act(ahead.observe_for(policy), held=ahead.actions) if policy else coasts)
 
     @property
     def ahead(self) -> Doubles:
