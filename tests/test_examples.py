@@ -118,6 +118,7 @@ def test_xor_is_learnt(capsys: pytest.CaptureFixture[str]):
     assert np.round(answers).tolist() == [0, 1, 1, 0]
 
 
+@pytest.mark.slow
 def test_digits_are_read(capsys: pytest.CaptureFixture[str]):
     lines = run("read_a_digit", capsys).splitlines()
     assert len(lines) == 10

@@ -68,6 +68,7 @@ def test_what_is_stacked_stands_for_ten_seconds(subtests):
                 assert abs(world.state.pose[..., [0, 2]]).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_more_manifolds_than_a_word_has_bits():
     # A plank under eighty balls: each needs a colour of its own, or some would not be held up.
     world = ground()

@@ -54,19 +54,19 @@ class Driver:
         return form
 
     def frames(self, number: int = 1) -> bool:
-        """Play frames. The first, the last and each tenth are drawn: drawing is most of the work, and changes nothing.
+        """Play frames. The first, the last and each thirtieth are drawn: that is most of the work, and changes nothing.
 
         Events come in with the first frame, which may hide or show the window.
         """
         for left in reversed(range(number)):
-            goes_on = self._play(drawn=left in (0, number - 1) or left % 10 == 0)
+            goes_on = self._play(drawn=left in (0, number - 1) or left % 30 == 0)
         return goes_on
 
     def skip(self, number: int = 1) -> None:
-        """Play frames of which only every tenth is drawn, of many calls too."""
+        """Play frames of which only every thirtieth is drawn, of many calls too."""
         for _ in range(number):
             self._skipped += 1
-            self._play(drawn=self._skipped % 10 == 0)
+            self._play(drawn=self._skipped % 30 == 0)
 
     def _play(self, *, drawn: bool) -> bool:
         window = self.app.window

@@ -132,6 +132,7 @@ def refused(tmp_path, monkeypatch, capsys):
     return refused
 
 
+@pytest.mark.slow
 def test_what_makes_no_sense_is_refused_in_a_sentence_before_anything_is_begun(subtests, refused):
     for arguments in CASES:
         with subtests.test(in_short(arguments)):

@@ -43,6 +43,7 @@ def spans(image, ink=0.1):
 # Data
 
 
+@pytest.mark.slow
 def test_all_of_mnist_is_there():
     train_images, train_labels, test_images, test_labels = load_mnist()
     assert train_images.shape == (60000, 28, 28)

@@ -54,6 +54,7 @@ class TestLearningOthersEnvironments:
     def _needs_gymnasium(self):
         pytest.importorskip("gymnasium")
 
+    @pytest.mark.slow
     def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys, monkeypatch):
         monkeypatch.setattr(GymTask, "validation_episodes", 8)
         monkeypatch.setattr(GymTask, "test_episodes", 10)

@@ -50,9 +50,7 @@ def likeness(taste):
     return liking @ LIKED / np.linalg.norm(liking) / np.linalg.norm(LIKED)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "ties", "least"), [(0.0, 0.0, 0.9), (0.0, 1.0, 0.9), (0.1, 0.0, 0.8), (0.1, 1.0, 0.8)]
-)
+@pytest.mark.parametrize(("wrong", "ties", "least"), [(0.0, 0.0, 0.9), (0.1, 1.0, 0.8)])
 def test_a_taste_is_found_from_forty_answers_though_some_are_wrong_and_some_cannot_be_told(wrong, ties, least):
     assert np.mean([likeness(answered(40, wrong, ties, seed)) for seed in range(3)]) > least
 

@@ -92,6 +92,7 @@ def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only()
     assert finished(flights(ScriptedPilot(), 6, 3, "near")) == finished(flights(ScriptedPilot(), 6, 3, "near"))
 
 
+@pytest.mark.slow
 def test_who_is_taught_hard_starts_is_chosen_by_them_too():
     pilot = ScriptedPilot()
     tasks = (LanderTask(Config(spawn=spawn)) for spawn in ("widening", "thorough"))

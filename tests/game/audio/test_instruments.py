@@ -31,6 +31,7 @@ def rms(key):
     return decibels(np.sqrt(np.mean(sound(key) ** 2)))
 
 
+@pytest.mark.slow
 def test_every_sound_has_its_level_no_offset_nothing_harsh_and_a_short_one_begins_and_ends_in_silence():
     for key, instrument in INSTRUMENTS.items():
         assert decibels(np.abs(sound(key)).max()) == pytest.approx(instrument.level, abs=0.1), key

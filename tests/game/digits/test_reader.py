@@ -127,6 +127,7 @@ def done(fixing: FixRunner, seconds: float = 60):
     return None
 
 
+@pytest.mark.slow
 def test_a_fix_is_kept_reported_and_undone_by_a_process_of_its_own(fixing: FixRunner, misread, tmp_path: Path):
     image, digit = misread
     shipped = fixing.folder("classic")

@@ -142,6 +142,7 @@ def test_it_takes_the_place_of_a_shipped_network_and_not_of_ones_own(tmp_path: P
     assert networks.ANYWHERE not in networks.Policies(MODELS_DIR, tmp_path).names
 
 
+@pytest.mark.slow
 def test_handed_the_stick_it_lands_every_mission(anywhere: networks.Policy):
     for name in ELSEWHERE:
         flight = begun(0, anywhere, mission=name)

@@ -355,6 +355,7 @@ def test_a_lesson_that_restarts_leans_as_the_player_did(open_game: Open):
         assert play(driver).flight.env.angle[0] == lean
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("device", ["pad", "mouse"])
 def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: str):
     pupil = Reader(open_game(PlayScene, 0, challenge=Tutorial()), device)

@@ -38,6 +38,7 @@ def open_in(driver: Driver, name: str, size: tuple[int, int]) -> None:
     driver.app.scenes.apply(Push(make(driver.app.context)))
 
 
+@pytest.mark.slow
 def test_every_screen_opens_in_the_smallest_window_goes_on_in_narrow_ones_and_after_a_long_stop(
     open_game: Open, context: Context, subtests: pytest.Subtests
 ) -> None:

@@ -82,6 +82,7 @@ def alone(config: Config, history: History) -> np.ndarray:
     return training.agent.network.values
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     split(beside)
     run = beside.top.run
