@@ -42,5 +42,6 @@ def test_a_press_reaches_the_thrust_through_twelve_files_at_most_and_the_documen
     sys.setprofile(None)
     assert play.flight.env.fuel[0] > 0
     [told] = re.findall(r"\*\*From a key to the thrust.*", (ROOT / "docs" / "architecture.md").read_text())
-    assert passed == set(re.findall(r"`(game/[\w/]+\.py)`", told))
-    assert len(passed) <= MOST, sorted(passed)
+    named = set(re.findall(r"`(game/[\w/]+\.py)`", told))
+    assert passed <= named  # and what is asked on the way: what a key means, and a guard
+    assert len(named) <= MOST, sorted(named)
