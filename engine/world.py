@@ -53,14 +53,9 @@ class World:
         self._params = BodyParams.empty()
         self.contacts: Contacts | None = None
         self._remembered: Contacts | None = None  # those of `contacts` whose impulses begin the next step
-        self._prepared: BodyParams | None = None  # for which all below is made
+        self._prepared: BodyParams | None = None  # for which `_prepare` has made what follows from them
         self.gravity = gravity
         self.iterations = iterations
-        self._shape_table: ShapeTable
-        self._broad_phase: BroadPhase
-        self._narrow_phase: NarrowPhase
-        self._movers: Span | None
-        self._rest: Rest
 
     @property
     def gravity(self) -> Array:
@@ -202,7 +197,7 @@ class World:
         if self._prepared is self.params:
             return
         params = self._prepared = self.params
-        self._movers = None
+        self._movers: Span | None = None
         self._shape_table = ShapeTable(self.shapes, self._shape_bodies, params.dynamic)
         self._broad_phase = BroadPhase(params, self._shape_table, self.batch, MARGIN)
         self._narrow_phase = NarrowPhase(params, self._shape_table)
