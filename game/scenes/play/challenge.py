@@ -83,6 +83,7 @@ class Rules:
         alone: whether the network may neither help nor take over.
         elsewhere: whether it is flown where it is not as on the moon.
         again: whether a finished flight restarts by itself, without a card.
+        anew: whether the next flight begins now, whether or not this one is over.
         through: whether it is finished and free flights follow.
         staked: whether another start would lose more than the present flight.
         mission: whose medals can be won; None without.
@@ -97,6 +98,7 @@ class Rules:
     alone: bool = False
     elsewhere: bool = False
     again: bool = False
+    anew: bool = False
     through: bool = False
     staked: bool = False
     mission: Mission | None = None

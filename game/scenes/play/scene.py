@@ -146,10 +146,10 @@ class PlayScene(Scene):
         asked = self._stick.read(self._across)
         self.flown.lay_out(self._head)
         self.flown.step(asked)
-        if self.flight.over and self.challenge.rules.again:
-            if self.ending.due:
-                self.retry()
-        elif self.flight.over and self.ending.card is None:
+        rules = self.challenge.rules
+        if rules.anew or (rules.again and self.ending.due):
+            self.retry()
+        elif self.flight.over and not rules.again and self.ending.card is None:
             self._sitting.add(self.flown)
             self.ending.card = self._make_card()
         if card := self._card:

@@ -87,18 +87,15 @@ class Tutorial(Challenge):
         super().__init__(kept=False, again=True)
         self._lessons = list(LESSONS)
         self.flown, self._side = False, 1.0  # to which it leans where a lesson restarts: left, or as the player did
-        self._begin_lesson(0)
+        self._number, self._why = 0, ""
+        self._begin()
 
     @property
     def lesson(self) -> Lesson:
         return self._lessons[self._number]
 
-    def _begin_lesson(self, number: int) -> None:
-        self._number, self._why = number, ""
-        self._begin()
-
     def _begin(self) -> None:
-        self._over = self._handed_over = False
+        self._over = self._handed_over = self.rules.anew = False
         self._flown_for = self._done_for = self.praise = 0
 
     def _end(self) -> None:
@@ -153,9 +150,8 @@ class Tutorial(Challenge):
         self._flown_for += 1
         self._handed_over |= flight.chooser.hand is StickHolder.NETWORK
         if self.praise:
-            self.praise -= 0 if flight.over else 1  # a landing is praised until the next flight
-            if not self.praise:
-                self._begin_lesson(self._number + 1)
+            self.praise = max(1, self.praise - 1)
+            self.rules.anew = self.praise == 1  # the next lesson is read before anything falls
             return ""
         self._done_for = self._done_for + 1 if self._does(flight) else 0
         if self._done_for < (1 if flight.over else self.lesson.steps):
@@ -180,7 +176,7 @@ class Tutorial(Challenge):
         if self._number == len(self._lessons) - 1:
             self._end()
         else:
-            self._begin_lesson(self._number + 1)
+            self._number, self._why, self.praise = self._number + 1, "", 0
 
     def ended(self, flown: FlownFlight) -> None:
         """Keep nothing."""

@@ -126,6 +126,7 @@ class Reader:
             if self.challenge.rules.through:
                 break
             if (name := self.challenge.lesson.name) != last:
+                assert play(self.driver).waiting, "its words are read before anything falls"
                 yield name
                 last = name
             self.follow()
@@ -364,7 +365,7 @@ def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: 
 
 
 def test_who_holds_on_to_the_engine_is_warned_lost_shown_why_and_goes_on_by_letting_go(open_game: Open):
-    pupil = Reader(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
+    pupil = Reader(at_lesson(open_game, "brake"), "keys")
     pupil.driver.frames(2)
     pupil.hold({MAIN})
     seen, why = [], ""
