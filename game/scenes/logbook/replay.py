@@ -113,10 +113,12 @@ class ReplayScene(WorldScene):
     # Time
 
     def go_to(self, step: int) -> None:
-        self.flight_replay.go_to(step)
+        step = min(step, self.flight_replay.reached)
+        for at in (step - 1, step):  # at the end, read-outs are of the moment before
+            self.flight_replay.go_to(at)
+            self._look()
         self._scenery.wind_to()
         self._pace.begin()
-        self._look()
 
     @property
     def ended(self) -> bool:

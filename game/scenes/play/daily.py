@@ -41,13 +41,12 @@ class DailyStart(Challenge):
             self.rules.bar = "day_again"
 
     def words(self, flown: FlownFlight) -> Words:
-        entry, result = flown.record and flown.record.entry, ""
-        if entry:
-            kind = "practice" if self.rules.bar else "eased" if entry.barred else "first"
-            result = self._attempt(entry).line_as(kind)
+        kind = "practice" if self.rules.bar else "eased" if flown.credit.bar else "first"
+        result = self._attempt(flown.record.entry).line_as(kind) if flown.record else ""
         return Words(
             texts.DAILY, self.line, opening=texts.DAILY_AGAIN_BEGIN if self.rules.bar else texts.DAILY_FIRST_BEGIN,
             stake=(texts.DAILY_STAKE, texts.DAILY_STAKE_MORE), result=result,
+            card=lambda card: card.compared.update({texts.DAILY: texts.DAILY_ATTEMPTS[kind]}),
         )  # fmt: skip
 
     def start(self, wanted: Wanted) -> Start:

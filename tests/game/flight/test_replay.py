@@ -162,7 +162,11 @@ def test_at_the_end_only_what_can_be_done_is_offered(replay: Driver):
 
     assert offers() == (True, {texts.HINT_STOP, texts.HINT_STEP})
     replay.wait(lambda: scene(replay).flight_replay.complete)
+    scene(replay).go_to(replay.top.flight_replay.length - 1)
+    before = scene(replay)._readouts
+    scene(replay).go_to(0)
     scene(replay).go_to(10_000)
+    assert scene(replay)._readouts["altitude"] == before["altitude"], "the moment before, from wherever one jumps"
     assert offers() == (False, {texts.CARD_WATCH})
     replay.key(pygame.K_LEFT)
     assert scene(replay).flight_replay.at == scene(replay).flight_replay.length - 4, "six back, and two frames on"

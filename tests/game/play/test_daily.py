@@ -76,6 +76,7 @@ def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, cont
     assert first
     assert (first.outcome, first.barred) == (scene.flight.outcome.name, "")
     assert Records(context.user_dir).read(first.file).recording == scene.flight.recording
+    said = [scene.ending.card.compared[texts.DAILY]]
     driver.key(pygame.K_r)
     driver.frames(3)
     again = play(driver)
@@ -83,6 +84,8 @@ def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, cont
     assert again.credit.notice == texts.NOT_COUNTED["day_again"]
     assert again.flown.ghost.name == texts.DAILY_GHOST
     end(driver, TOO_FAST)
+    said.append(again.ending.card.compared[texts.DAILY])
+    assert said == [texts.DAILY_ATTEMPTS["first"], texts.DAILY_ATTEMPTS["practice"]], "a crash says so, too"
     assert attempt(context) == first
     assert [entry.alone for entry in Records(context.user_dir).entries()] == [True, False]
 
