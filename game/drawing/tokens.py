@@ -10,6 +10,7 @@ from typing import Final
 Colour = tuple[int, int, int]
 
 VIEW_SIZE: Final = (1280, 720)
+NARROW, LOW = 860.0, 480.0  # a window with less has no room for a flight beside words
 
 NIGHT0: Final[Colour] = (9, 12, 24)
 NIGHT1: Final[Colour] = (19, 26, 48)

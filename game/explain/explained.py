@@ -111,7 +111,7 @@ def _draw(canvas: Canvas, area: Explanation) -> None:
         top = min(each.top for each in foot if each.left < box.right and box.left < each.right)  # and of all above it
         within.height, place = top - 6 - within.top, (box.left - _ASIDE, view.bottom)
     elif box.right + _WIDTH + 40 > within.right and box.left - 6 - within.left > _WIDTH + 2 * _ASIDE:
-        within.width, place = box.left - 6 - within.left, (box.left, box.centery)
+        within.width, place = box.left - 6 - within.left, (box.left, box.bottom)  # off a sentence
     elif box.right + _WIDTH + 40 > within.right:
         within.height -= box.bottom + 6 - within.top
         within.bottom, place = view.bottom - _MARGIN, (box.left - _ASIDE, box.bottom)

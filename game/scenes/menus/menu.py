@@ -32,6 +32,7 @@ _TITLE, _ACROSS, _DOWN = 88.0, 0.11, 0.12
 _LINE_ROOM, _LINES = 380.0, 2  # points of the line, which ends before the Earth, and for how many there is room
 _LOW: Final = 430.0  # points of a window in which nothing is left free
 _ROOMY: Final = 560.0  # points of a window in which all that can be flown is explained
+_CLOSE: Final = 5.0  # points around what can be flown: all of it is seen in a low window, a long result too
 _PAD, _ABOVE, _BETWEEN = 4.0, 28.0, 20.0  # points around a word, above the title and below the line, in a high one
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
@@ -153,7 +154,8 @@ class FlightsScene(_OverMoon):
         panel.gap(8)
         for name, route in FLIGHTS.items():
             word, line, figure = texts.FLIGHTS[name][0], partial(self._line, name), partial(self._figure, name)
-            panel.button(word, partial(push, route), line, figure=figure, size=_WORD, weight="light", colour=INK)
+            row = panel.button(word, partial(push, route), line, figure=figure, size=_WORD, weight="light", colour=INK)
+            row.pad = _CLOSE
 
     def _line(self, name: str) -> str:
         """Return what it is, where there is room for that."""

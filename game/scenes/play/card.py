@@ -10,7 +10,7 @@ import pygame
 
 from game.core import texts
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MEDALS, MUTE, SMALL, TITLE
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, LOW, MEDALS, MUTE, NARROW, SMALL, TITLE
 from game.flight.outcomes import OutcomeCard
 from game.ui.hints import Hint, HintRow, hint_lines
 from game.world.camera import ClearArea
@@ -22,12 +22,11 @@ if TYPE_CHECKING:
 _WIDEST: Final = 440.0
 _MARGIN: Final = 32.0
 _AROUND: Final = 16.0  # least points from the sides of the window
-_NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card, and the flight below it
+_KEYS: Final = 54.0  # in a narrow one, keys stand above the card, and the flight below it
 _TOP: Final = 96.0  # of the card, in a window with room
 _LAMP: Final = 13.0  # points from one lamp to the next
 _FIGURES: Final = LEADING * LABEL + 4 + LEADING * TITLE  # points of a row of figures
 _SIGN: Final = 34.0  # points for the sign before the title
-_LOW: Final = 480.0  # points of a window in which the figures are left out, so that the craft is seen below the card
 
 
 @dataclass(frozen=True)
@@ -48,9 +47,9 @@ class ShownCard:
         view = canvas.view
         width = min(_WIDEST, view.width - 2 * _AROUND)
         rows = Cursor(0.0, 0.0, width - 2 * _MARGIN, canvas.scale)
-        self._write(rows, low=view.height < _LOW)
+        self._write(rows, low=view.height < LOW)
         height = rows.y + 29.0 * len(hint_lines(self.hints, canvas, (0.0, 0.0), rows.width)) + 16
-        narrow = view.width < _NARROW
+        narrow = view.width < NARROW
         side = view.left + 3 * _AROUND if self.aside else view.right - 3 * _AROUND - width
         left = view.centerx - width / 2 if narrow else side
         top = view.top + _KEYS if narrow else max(view.top + _AROUND, min(_TOP, (view.height - height) / 3))
@@ -59,7 +58,7 @@ class ShownCard:
     def clear(self, canvas: Canvas) -> ClearArea:
         """Return what the card leaves free of the world, beside it or below it."""
         box, view = self.box(canvas), canvas.view
-        if view.width < _NARROW:
+        if view.width < NARROW:
             return ClearArea.of(canvas, pygame.FRect(view.left, box.bottom, view.width, view.bottom - box.bottom))
         return ClearArea.of(canvas, pygame.FRect(view.left, 0, box.left - view.left, view.height))
 
@@ -71,7 +70,7 @@ class ShownCard:
         box = self.box(canvas)
         canvas.panel(box, 1.0)  # neither the Earth nor a path shines through
         rows = Cursor(box.left + _MARGIN, box.top, box.width - 2 * _MARGIN, canvas.scale, canvas)
-        self._write(rows, low=canvas.view.height < _LOW)
+        self._write(rows, low=canvas.view.height < LOW)  # without figures, the craft is seen below
         canvas.line((rows.left, rows.y), (rows.right, rows.y), LINE)
         for row in self.hint_rows(canvas):
             row.draw(canvas)

@@ -149,8 +149,7 @@ class FlownFlight:
         self.pace.rate = self._settings.pace
         if self._waits(asked):
             self._help()
-            if self._settings.show_thinking:
-                self.think(_THINKS)
+            self.think()
             if guard := self.flight.chooser.guard:
                 guard.hang(self.flight, asked)
             self.path_preview.follow(waiting=True)
@@ -213,8 +212,7 @@ class FlownFlight:
 
     def _follow_flight(self) -> None:
         flight, asks = self.flight, self._settings.show_thinking
-        if asks:
-            self.think(_THINKS)
+        self.think()
         self.interventions.follow(flight)
         self.path.follow()
         self.copilot_panel.follow(flight, self.futures if asks else None)
@@ -222,12 +220,12 @@ class FlownFlight:
         if flight.over:
             self._readouts = at_touch(self._readouts, flight.env)
 
-    def think(self, decisions: int) -> None:
+    def think(self) -> None:
         """Fly the six futures of the present moment some decisions further, for whoever asks."""
-        if self._policy is None or self.flight.over:
+        if not self._settings.show_thinking or self._policy is None or self.flight.over:
             return
         self.futures = self.futures or SixFutures(self._policy, self.flight.route)
-        self.futures.follow(self.flight.env, decisions)
+        self.futures.follow(self.flight.env, _THINKS)
         self.copilot_panel.follow(self.flight, self.futures)
 
     # The end
@@ -345,8 +343,7 @@ class FlownFlight:
             self.ghost.draw_way(world, view)
         if flight.over:
             self.path.draw(world, view, self.interventions.moments, self.ending.retraced)
-        thinks = self.thinks or (whole and self.copilot_panel.shown and not flight.over)
-        if thinks and self.futures:
+        if self.thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
         else:
             self.path_preview.draw(world, view, self.scenery.clear.head)
@@ -361,7 +358,7 @@ class FlownFlight:
         if low < foot:
             draw_flight(canvas, self._readouts, shown, row)
         head.write(canvas)
-        stands = thinks if whole else self.panel_stands
+        stands = self.thinks if whole else self.panel_stands
         if stands and self.copilot_panel.fits(canvas) and not self._behind_panel(canvas, view, pose):
             self.copilot_panel.draw(canvas, self.network.name)
 

@@ -16,7 +16,7 @@ import pygame
 from game.core import texts
 from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, Colour
+from game.drawing.tokens import INK, MARGIN, MUTE, NARROW, NIGHT0, SMALL, TEXT, Colour
 from game.explain.readouts import Lamp
 from game.flight.networks import titled
 from game.input.bindings import Command
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from game.scenes.play.help import HelpWords
 
 _SIDES, _TOP = 0.05, 20.0  # free at either side, of the width; and points above
-_NARROW: Final = 860.0  # points of a window in which keys stand above names
 _SENTENCE: Final = 18.0
 _WIDEST: Final = 480.0  # points of a line of it, which ends before the Earth
 _COVER: Final = 0.75  # opacity behind words: no star shines through
@@ -109,7 +108,7 @@ class _Layout:
         self.head, self.canvas, self.drawn = head, canvas, drawn
         view = canvas.view
         self.side = max(min(MARGIN, _SIDES * view.width), 12.0)
-        self.narrow = view.width < _NARROW
+        self.narrow = view.width < NARROW  # then keys stand above names
         self.beside = view.width - 2 * self.side if self.narrow else 0.36 * view.width  # room of names, and of keys
         self.right = head.panel.left - 16 if head.panel else view.right
         self.middle, self.help_line, self.low = (view.left + self.right) / 2, 0.0, 0.0

@@ -1,4 +1,4 @@
-"""Pause: entries over a scene that stands still; over a flight, with all that can be known of it."""
+"""Pause: entries over a scene that stands still; over a flight, with its read-outs and the choices for it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.core.settings import HELP, TOP_RUNG
-from game.drawing.tokens import INK, MUTE, SMALL, TEXT
+from game.drawing.tokens import INK, LOW, MUTE, NARROW, SMALL, TEXT
 from game.explain.explained import Explained
 from game.explain.readouts import GAUGES, foot_of
 from game.flight import networks
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 _TITLE, _WORD = 28.0, 20.0
 _COLUMN: Final = 90.0  # points that a column of entries needs
 _AROUND, _EDGE = 24.0, 12.0  # points between rows and the panel's sides, and from there to the edge of the window
-_BESIDE: Final = (860.0, 480.0)  # points of a window in which a flight is seen beside its choices
-_AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
 
 class PauseScene(PanelScene):
@@ -50,9 +48,9 @@ class PauseScene(PanelScene):
     most = 420.0
 
     @property
-    def title(self) -> str:
-        """What stands above the entries."""
-        return texts.PAUSE_TITLE
+    def ended(self) -> str:
+        """How the scene below has ended, and cannot be resumed; empty if it can."""
+        return ""
 
     def __init__(
         self,
@@ -72,9 +70,10 @@ class PauseScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        panel.title(self.title, _TITLE, "extralight")
-        retry = [(self._retry_word(), self._begin_anew)] if self._retry else []
-        rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop), *retry, *self._more()]
+        panel.title(self.ended or texts.PAUSE_TITLE, _TITLE, "extralight")
+        rows: list[tuple[str, OnPress]] = [] if self.ended else [(texts.PAUSE_RESUME, Pop)]
+        rows += [(self._retry_word(), self._begin_anew)] if self._retry else []
+        rows += self._more()
         rows += [(texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2))]
         half = (len(rows) + 1) // 2  # in two columns, to be in sight in any window
         for column, part in zip(panel.beside((1, 1), _COLUMN, 24.0), (rows[:half], rows[half:]), strict=True):
@@ -82,10 +81,18 @@ class PauseScene(PanelScene):
                 column.button(label, press, size=_WORD, weight="light", colour=INK)
 
     def actions(self) -> Table:
-        return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, texts.HINT_RESUME)]
+        back = texts.HINT_BACK if self.ended else texts.HINT_RESUME
+        return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, back)]
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._behind.draw(canvas)
+        self._cover(canvas)
+
+    def _cover(self, canvas: Canvas) -> None:
+        """Cover what is behind the rows and the hints: neither words nor the Earth shine through."""
+        box, low = self.panel.box, max(row.position[1] for row in self.hint_rows(canvas))
+        cover = pygame.FRect(box.left - _AROUND, _EDGE, box.width + 2 * _AROUND, low)
+        canvas.panel(cover.clip(canvas.view.inflate(-2 * _EDGE, 0)), 1.0)
 
     def _begin_anew(self) -> Transition:
         assert self._retry is not None
@@ -96,8 +103,7 @@ class PauseScene(PanelScene):
 class FlightPauseScene(PauseScene):
     """Pause of a flight, and the choices for it and the next ones; each is saved the moment it is made.
 
-    The flight is seen with all read-outs, what the network thinks, and its six futures as paths. What a challenge fixes
-    is not offered.
+    The flight is seen with all read-outs. What a challenge fixes is not offered.
     """
 
     def __init__(self, context: Context, below: PlayScene) -> None:
@@ -106,9 +112,9 @@ class FlightPauseScene(PauseScene):
         super().__init__(context, below, below.retry)
 
     @property
-    def title(self) -> str:
+    def ended(self) -> str:
         card = self._flight.ending.card
-        return card.title if card else super().title
+        return card.title if card else ""
 
     def describe(self, panel: Panel) -> None:
         super().describe(panel)
@@ -160,14 +166,14 @@ class FlightPauseScene(PauseScene):
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
-        self._flight.flown.think(_AHEAD)
+        self._flight.flown.think()
         self.explained.update()
         return super().update()
 
     @staticmethod
     def _beside(canvas: Canvas) -> bool:
         """Whether the flight and its read-outs have room beside the choices; in a small window, they give way."""
-        return canvas.view.width >= _BESIDE[0] and canvas.view.height >= _BESIDE[1]
+        return canvas.view.width >= NARROW and canvas.view.height >= LOW
 
     def room(self, canvas: Canvas) -> pygame.FRect:
         room = super().room(canvas)
@@ -184,12 +190,7 @@ class FlightPauseScene(PauseScene):
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         view, beside = canvas.view, self._beside(canvas)
         self._flight.flown.draw(canvas, 1.0, Head(), whole=True, low=0.0 if beside else view.bottom)
-        if not beside:
-            canvas.panel(view, 1.0)
-            return
-        box, low = self.panel.box, max(row.position[1] for row in self.hint_rows(canvas))
-        cover = pygame.FRect(box.left - _AROUND, _EDGE, box.width + 2 * _AROUND, low)
-        canvas.panel(cover.clip(view.inflate(-2 * _EDGE, 0)), 1.0)  # the Earth does not shine through
+        self._cover(canvas) if beside else canvas.panel(view, 1.0)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)

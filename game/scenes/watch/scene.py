@@ -228,7 +228,7 @@ class WatchScene(WorldScene):
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = brief(networks.word(self.flyer.chosen.name), LONGEST_NAME)
-        return [(texts.WATCH_PAUSE.format(name=name), self._open_networks)]
+        return [(texts.PAUSE_NETWORK.format(name=name), self._open_networks)]
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self._take)

@@ -119,6 +119,7 @@ def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_paus
         assert driver.saved()["show_thinking"] is shown
     driver.key(pygame.K_ESCAPE)
     driver.frames(3)
+    assert texts.LANDINGS_TITLE not in written, "nobody has asked, and F1 is off again"
     assert texts.EXPLAIN_READOUTS["fuel"] in areas(driver)
     driver.key(pygame.K_F1)
     explained = [area.what for area in driver.app.canvas.explained]

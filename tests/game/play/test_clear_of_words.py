@@ -233,4 +233,4 @@ def test_the_pause_after_a_flight_shows_nothing_that_the_network_thinks(
     driver.frames(20)
     assert driver.top_name == "FlightPauseScene"
     assert texts.OUTCOMES["CRASHED"][0] in written
-    assert not {texts.LANDINGS_TITLE, texts.DECISION_TITLE} & set(written)
+    assert not {texts.LANDINGS_TITLE, texts.DECISION_TITLE, texts.PAUSE_RESUME, texts.HINT_RESUME} & set(written)
