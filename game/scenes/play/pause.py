@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import pygame
 
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition, push
+from game.core.scene import Pop, Push, Replace, Scene, Transition, push
 from game.core.settings import HELP, TOP_RUNG
 from game.drawing.tokens import INK, LOW, MUTE, NARROW, SMALL, TEXT
 from game.explain.explained import Explained
@@ -17,7 +17,7 @@ from game.explain.readouts import GAUGES, foot_of
 from game.flight import networks
 from game.input.controls import Command
 from game.scenes.play.head import Head, head_of
-from game.ui.actions import Action, Table
+from game.ui.actions import Action, Run, Table
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel_scene import PanelScene, StillPicture
 
@@ -39,7 +39,7 @@ class PauseScene(PanelScene):
 
     Args:
         below: the paused scene.
-        retry: function that restarts the scene below; None for no such entry.
+        retry: function that restarts the scene below, or returns who asks first; None for no such entry.
         retry_word: what that entry says; called each time the rows are described.
         more: function that returns further entries and their actions; called each time the rows are described.
 
@@ -56,7 +56,7 @@ class PauseScene(PanelScene):
         self,
         context: Context,
         below: Scene,
-        retry: Callable[[], None] | None = None,
+        retry: Run | None = None,
         retry_word: Callable[[], str] = lambda: texts.PAUSE_RETRY,
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
@@ -96,8 +96,8 @@ class PauseScene(PanelScene):
 
     def _begin_anew(self) -> Transition:
         assert self._retry is not None
-        self._retry()
-        return Pop()
+        asked = self._retry()
+        return Replace(asked.scene) if isinstance(asked, Push) else Pop()
 
 
 class FlightPauseScene(PauseScene):
@@ -109,7 +109,7 @@ class FlightPauseScene(PauseScene):
     def __init__(self, context: Context, below: PlayScene) -> None:
         self._flight = below
         self.explained = Explained()
-        super().__init__(context, below, below.retry)
+        super().__init__(context, below, below.runs[Command.RETRY])
 
     @property
     def ended(self) -> str:

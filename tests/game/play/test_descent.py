@@ -148,6 +148,12 @@ def test_another_start_asks_before_it_ends_a_run_and_comes_at_once_where_none_is
         game.keys(key, pygame.K_RIGHT, pygame.K_RETURN)
         assert (game.top_name, descent(game).begins.number, descent(game).total) == ("PlayScene", 1, 0)
     land(game)
+    game.keys(pygame.K_ESCAPE)
+    game.press_on(texts.PAUSE_RETRY)
+    assert game.top_name == "QuestionDialog"
+    game.keys(pygame.K_RETURN)
+    assert (game.top_name, descent(game).begins.number) == ("PlayScene", 2)
+    land(game)
     crash(game)
     game.key(pygame.K_n)
     assert (game.top_name, descent(game).begins.number) == ("PlayScene", 1), "a run that has ended is not lost"
