@@ -139,14 +139,9 @@ class Shared:
 class Crew:
     """A person at the stick, who can hand it over to a network, and share it with one.
 
-    Args:
+    Attributes:
         network: the network that can take or share the stick; None for a person alone.
         shares: whether it may share it, and not only take it.
-        route: how it is led around rock on a leg of a descent; None in any other flight.
-
-    Attributes:
-        network: as given, but that it can be changed.
-        shares: as given.
         hand: who holds the stick.
         copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
         guard: what guards the flight by futures, where there is one; without it, a guardian goes by values.

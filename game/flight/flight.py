@@ -6,16 +6,15 @@ from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
-from ai.environment import Doubles, Floats
+from ai.environment import Bools, Doubles, Floats
 from ai.flights.recording import Recording, StickHolder
 from ai.flights.verification import begun
 from ai.lander.descent import leg_of
-from ai.lander.environment import Outcome
+from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Pilot
 from ai.lander.push import Push
 from ai.lander.route import Route
 from game.flight.choosers import Choice, Chooser, Crew
-from game.flight.poses import Poses
 
 __all__ = ["Flight", "Recording", "StickHolder", "begin"]
 
@@ -32,15 +31,37 @@ def _route_of(start: Recording) -> Route | None:
     return Route(leg_of(start.seed, start.leg).route) if start.leg else None
 
 
+class Poses:
+    """Last two poses x, y, angle of every lander, for interpolation when drawing."""
+
+    def __init__(self, env: LanderEnv) -> None:
+        self._env = env
+        self.now = self._read()
+        self.before = self.now
+
+    def take(self, jumped: Bools | None = None) -> None:
+        """Store the poses after a step; the slots of `jumped` were reset, and are not interpolated."""
+        self.before, self.now = self.now, self._read()
+        if jumped is not None and jumped.any():
+            self.before = np.where(jumped[:, None], self.now, self.before)
+
+    def at(self, alpha: float) -> Doubles:
+        """Return poses (n, 3), interpolated between the last two steps by `alpha`, 0 to 1."""
+        poses: Doubles = self.before + alpha * (self.now - self.before)
+        return poses
+
+    def _read(self) -> Doubles:
+        return np.concatenate([self._env.position, self._env.angle[:, None]], axis=1)
+
+
 class Flight(Generic[C]):
     """Flight of one lander: a recording of what is pushed in each step, and what chooses that.
 
     Args:
         start: the recording of a flight from the same start; what it has flown is not looked at.
-        chooser: what chooses the push of each step.
 
     Attributes:
-        chooser: as given, and free to be changed.
+        chooser: what chooses the push of each step; free to be changed.
         choice: what it chose last.
         asked: what the stick asks for.
         route: how a network is led around rock on a leg of a descent; None in any other flight.

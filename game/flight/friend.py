@@ -1,4 +1,4 @@
-"""Flights between friends: how one gets into the clipboard, and out of it or a file into the game."""
+"""Flights between friends: how one gets out of the clipboard or a file into the game."""
 
 from __future__ import annotations
 
@@ -11,9 +11,8 @@ from ai.flights.recording import ClaimedFlight
 from game.core import texts
 from game.core.scene import Push, Scene, push
 from game.flight import codes
-from game.flight.flight_file import Record
 from game.input.controls import copies_or_pastes
-from game.ui.clipboard import give, pasted
+from game.ui.clipboard import pasted
 from game.ui.context import Context
 
 
@@ -35,11 +34,6 @@ def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push |
     elif copies_or_pastes(event) == "v":
         return None if scene.typing else paste(context)
     return None
-
-
-def copy(context: Context, record: Record) -> None:
-    """Copy a flight as a code."""
-    give(context, codes.code(record), texts.CODE_COPIED)
 
 
 def paste(context: Context) -> Push | None:

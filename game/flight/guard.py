@@ -99,7 +99,7 @@ class Guard:
         """Return whether a craft that hangs may go: it is known whether the network lands, or that takes too long."""
         if not (self.acts(flight) and _begins(flight)) or self.safe or self._hung >= _PATIENCE:
             return True
-        known = self.ahead.known() if self._moment == _here(flight) else {}
+        known = self.ahead.known() if self._moment == flight.at else {}
         return any(future.plan for future in known.values()) or all(key in known for key in KEYS)
 
     def hang(self, flight: Flight[Any], asked: Push) -> None:
@@ -107,7 +107,7 @@ class Guard:
         if not self.acts(flight) or not _begins(flight) or flight.over:
             return
         self._hung += asked != _NOTHING
-        if self._moment != _here(flight) or self._flown_by != self._flyer(flight):
+        if self._moment != flight.at or self._flown_by != self._flyer(flight):
             self._ask(flight, (), asked)
         else:
             self.ahead.hint(asked)
@@ -137,7 +137,7 @@ class Guard:
         """
         copilot, alone = self._copilot, self._crew.alone
         assert alone is not None
-        known: Mapping[Push, Future] = self.ahead.known() if self._moment == _here(flight) else {}
+        known: Mapping[Push, Future] = self.ahead.known() if self._moment == flight.at else {}
         self._alone = None if by_hand else alone.decide(flight)
         stick = KEYS[int(self._alone.action[0])] if self._alone else self._taps.asked
         held = self.safe
@@ -170,7 +170,7 @@ class Guard:
         return self._wish if self.waits else wish
 
     def _ask(self, flight: Flight[Any], before: Opening, wish: Push, likely: Doubles | None = None) -> None:
-        self._moment, self._flown_by = _here(flight) + DECISION_STEPS * len(before), self._flyer(flight)
+        self._moment, self._flown_by = flight.at + DECISION_STEPS * len(before), self._flyer(flight)
         moment = Moment.of(flight.env)
         if likely is not None:
             moment.target[:] = flight.target_of(likely)
@@ -189,11 +189,6 @@ class Guard:
 def _begins(flight: Flight[Any]) -> bool:
     """Whether a decision is due."""
     return flight.at % DECISION_STEPS == 0
-
-
-def _here(flight: Flight[Any]) -> int:
-    """Return the steps flown, which tell one moment of the flight from another."""
-    return int(flight.env.steps[0])
 
 
 def nearest(wish: Push, known: Mapping[Push, Future]) -> Push:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, replace
-from datetime import datetime
+from datetime import date, datetime
 from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
@@ -28,6 +28,11 @@ RECENT: Final = 100  # latest flights, whose files are kept whatever their outco
 BEST: Final = 5  # best landings of each mission, whose files are kept too, as are those of the longest descent
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
 SLACK: Final = 25  # surplus files before they are cleared
+# A figure of a landing's line in the logbook, and what it is to reach: points at least, engine and time at most.
+GOALS: Final = (
+    ("score", 80.0), ("fuel", 4.5), ("seconds", 12.0), ("score", 90.0), ("fuel", 3.5), ("seconds", 10.0),
+    ("score", 95.0), ("fuel", 3.0), ("seconds", 9.0), ("score", 98.0),
+)  # fmt: skip
 
 
 def describe(flight: Flight[Any], when: float, **more: Any) -> Entry:
@@ -135,8 +140,8 @@ def longest_descent(entries: Iterable[Entry]) -> list[Entry]:
     return longest
 
 
-def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
-    """Return up to `most` best landings of each mission by the person alone that can be replayed.
+def best(entries: Iterable[Entry]) -> list[Entry]:
+    """Return up to `BEST` best landings of each mission by the person alone that can be replayed.
 
     Landings from the ladder are ranked separately, like another mission.
     """
@@ -145,7 +150,7 @@ def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
         return entry.course, entry.pads, entry.on_ladder
 
     own = (entry for entry in entries if entry.landed and entry.alone and entry.file)
-    return [entry for _, each in groupby(sorted(own, key=kind), kind) for entry in sorted(each, key=rank)[:most]]
+    return [entry for _, each in groupby(sorted(own, key=kind), kind) for entry in sorted(each, key=rank)[:BEST]]
 
 
 def rank(entry: Entry) -> tuple[float, ...]:
@@ -167,9 +172,41 @@ def ladder_rung(settings: Settings, entries: Iterable[Entry]) -> int:
     return settings.rung
 
 
-def best_alone(entries: Iterable[Entry]) -> int:
-    """Return the highest score of the player's own free flights from anywhere; 0 before any landing."""
-    return max(
-        (entry.score for entry in entries if entry.alone and not (entry.course or entry.on_ladder)),
-        default=0,
-    )
+class Goals:
+    """The player's own landings in free flights from anywhere, what is to be reached next, and the best."""
+
+    def __init__(self, entries: Iterable[Entry] = ()) -> None:
+        self._landings: list[Entry] = []
+        for entry in entries:
+            self.add(entry)
+
+    def add(self, entry: Entry) -> bool:
+        """Count a flight; return whether it is a landing that counts here."""
+        counts = entry.landed and entry.alone and not (entry.course or entry.on_ladder)
+        if counts:
+            self._landings.append(entry)
+        return counts
+
+    @property
+    def best(self) -> int:
+        """The highest score; 0 before any landing."""
+        return max((entry.score for entry in self._landings), default=0)
+
+    @property
+    def next(self) -> str:
+        """The first goal that no landing has reached yet, as a sentence; empty after the last."""
+        for name, value in GOALS:
+            figures = [getattr(each, name) for each in self._landings]
+            if not any(figure >= value if name == "score" else figure <= value for figure in figures):
+                return texts.GOALS[name].format(value=value)
+        return ""
+
+    def bests(self, now: float) -> dict[str, str]:
+        """Return the best scores of this day and week, by their names on the card."""
+        today = date.fromtimestamp(now)
+        days = [(date.fromtimestamp(each.when), each.score) for each in self._landings]
+        spans = {
+            texts.CARD_TODAY: [score for day, score in days if day == today],
+            texts.CARD_WEEK: [score for day, score in days if day.isocalendar()[:2] == today.isocalendar()[:2]],
+        }
+        return {name: texts.SCORE.format(count=max(scores)) for name, scores in spans.items() if scores}

@@ -155,10 +155,10 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = F
     Where it is not as on the moon (`elsewhere`), the one that lands anywhere takes the place of a shipped one, or
     `problem` says why it cannot.
     """
-    known, shipped = folders(models_dir, user_dir), models_dir / LANDER
-    wanted = name if name in known else DEFAULT
-    network = load(wanted, known[wanted]) if wanted in known else _missing(models_dir)
-    if not elsewhere or known.get(wanted, shipped / DEFAULT).parent != shipped:
+    policies, shipped = Policies(models_dir, user_dir), models_dir / LANDER
+    wanted = name if name in policies.folders else DEFAULT
+    network = policies[wanted]
+    if not elsewhere or policies.folders.get(wanted, shipped / DEFAULT).parent != shipped:
         return network
     anywhere = load(ANYWHERE, shipped / ANYWHERE, NUM_FEATURES + len(SURROUNDINGS))
     if anywhere.policy:
@@ -171,10 +171,10 @@ class Policies:
     """All flyers by name, the scripted pilot last. A network is read on first use; `read` has those read so far."""
 
     def __init__(self, models_dir: Path, user_dir: Path) -> None:
-        self._models_dir = models_dir
-        self._folders = folders(models_dir, user_dir)
-        missing = [] if DEFAULT in self._folders else [DEFAULT]
-        self.names = [*missing, *self._folders, SCRIPTED]
+        self._missing = texts.NETWORK_MISSING.format(path=models_dir / LANDER / DEFAULT)
+        self.folders = folders(models_dir, user_dir)
+        missing = [] if DEFAULT in self.folders else [DEFAULT]
+        self.names = [*missing, *self.folders, SCRIPTED]
         self.read: dict[str, Network] = {}
 
     def __getitem__(self, name: str) -> Network:
@@ -197,10 +197,6 @@ class Policies:
 
         if name == SCRIPTED:
             return Network(SCRIPTED, ScriptedPilot())
-        if name == DEFAULT and name not in self._folders:
-            return _missing(self._models_dir)
-        return load(name, self._folders[name])
-
-
-def _missing(models_dir: Path) -> Network:
-    return Network(DEFAULT, problem=texts.NETWORK_MISSING.format(path=models_dir / LANDER / DEFAULT))
+        if name == DEFAULT and name not in self.folders:
+            return Network(DEFAULT, problem=self._missing)
+        return load(name, self.folders[name])

@@ -150,8 +150,8 @@ def struck_side(env: LanderEnv) -> bool:
 
 def crash_reason(env: LanderEnv) -> str:
     """Return which limit the lander exceeded, and by how much."""
-    cause, limits = cause_of(env), _exceeded(env)
-    value, limit = limits.get(cause, (0.0, 0.0))
+    cause = cause_of(env)
+    value, limit = _exceeded(env).get(cause, (0.0, 0.0))
     if cause is Cause.TERRAIN and not env.intact[0]:
         return texts.STRUCK_ABOVE
     steep = struck_side(env)
@@ -159,11 +159,11 @@ def crash_reason(env: LanderEnv) -> str:
     if cause is Cause.TILTED and _tipped(env):
         return texts.TIPPED_OVER.format(tilt=f"{value:.0f}", speed=f"{touch_speed(env):.1f}")
     words = texts.CRASHED_SIDEWAYS if steep else texts.CAUSES[cause.name]
-    shown = _beyond(value, limit, 0 if cause is Cause.TILTED else 1) if cause in limits else ("", "")
+    shown = _beyond(value, limit, 0 if cause is Cause.TILTED else 1)
     return words.format(value=shown[0], limit=shown[1])
 
 
-def _beyond(value: float, limit: float, places: int = 1) -> tuple[str, str]:
+def _beyond(value: float, limit: float, places: int) -> tuple[str, str]:
     """Format a value and the limit it exceeds, with up to two more decimal places to tell them apart."""
     enough = next((n for n in (places, places + 1) if f"{value:.{n}f}" != f"{limit:.{n}f}"), places + 2)
     return f"{value:.{enough}f}", f"{limit:.{enough}f}"

@@ -10,8 +10,8 @@ from ai.agent.decision import Decision
 from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import COAST
+from game.flight.flight import Poses
 from game.flight.networks import Policy, decide, decision_steps
-from game.flight.poses import Poses
 
 # Steps that an ended flight of a swarm stays visible.
 REST_STEPS: Final = 75
@@ -31,8 +31,8 @@ class Swarm:
 
     """
 
-    def __init__(self, count: int, seed: int, policy: Policy, spawn: str = "random") -> None:
-        self.env = LanderEnv(count, seed, spawn, frame_skip=1)
+    def __init__(self, count: int, seed: int, policy: Policy) -> None:
+        self.env = LanderEnv(count, seed, frame_skip=1)
         self.observation: Floats = self.env.reset()
         self.policy = policy
         self.poses = Poses(self.env)

@@ -11,11 +11,12 @@ from game.core.scene import Transition, push
 from game.drawing.tokens import INK, SMALL, TITLE
 from game.flight import codes
 from game.flight.flight_file import Entry, Record
-from game.flight.friend import copy, paste
+from game.flight.friend import paste
 from game.flight.logbook import Records, best
 from game.flight.networks import flew
 from game.flight.outcomes import ending_word
 from game.ui.actions import Table
+from game.ui.clipboard import give
 from game.ui.listing import Row
 from game.ui.panel_scene import PanelScene
 
@@ -120,7 +121,7 @@ class LogbookScene(PanelScene):
 
     def _copy(self) -> None:
         if record := self._record():
-            copy(self.context, record)
+            give(self.context, codes.code(record), texts.CODE_COPIED)
 
 
 def who_and_when(entry: Entry) -> str:

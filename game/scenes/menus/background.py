@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from ai.lander.environment import LanderEnv, Outcome
 from game.drawing.canvas import Canvas
+from game.flight.flight import Poses
 from game.flight.networks import Policy, decision_steps
-from game.flight.poses import Poses
 from game.ui.context import Context
 from game.world.camera import Camera, CameraTarget
 from game.world.craft import STAND

@@ -16,7 +16,7 @@ from ai.lander.spawns import LADDER, RUNGS
 from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
 from game.flight.flight import Flight
-from game.flight.goals import Goals
+from game.flight.logbook import Goals
 from game.flight.outcomes import OutcomeCard
 from game.scenes.play.challenge import Challenge, Start, Wanted, Words
 

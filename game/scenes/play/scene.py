@@ -17,8 +17,7 @@ from game.explain.explained import Explained
 from game.flight import networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
-from game.flight.goals import Goals
-from game.flight.logbook import Records, ladder_rung
+from game.flight.logbook import Goals, Records, ladder_rung
 from game.flight.outcomes import OutcomeCard
 from game.input.controls import Command, translate
 from game.scenes.play.card import ShownCard

@@ -9,7 +9,7 @@ from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight_file import Entry
-from game.flight.logbook import best_alone
+from game.flight.logbook import Goals
 from game.scenes.play.free import rung_of
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class Sitting:
     def __init__(self, entries: Iterable[Entry]) -> None:
         entries = list(entries)
         self._landed_before = any(entry.landed and not entry.bar for entry in entries)
-        self._best = best_alone(entries)
+        self._best = Goals(entries).best
         self._best_here: dict[str, int] = {}  # scores of one's own landings by their starts
         self._first = self._record = False
         self._score = self._before = 0  # of the flight that has ended last, and the best from its start before

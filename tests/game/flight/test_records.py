@@ -18,7 +18,7 @@ from game.core import texts
 from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import VERSION, Entry, Record, from_text, to_text
-from game.flight.logbook import Records, best, best_alone, longest_descent
+from game.flight.logbook import Goals, Records, best, longest_descent
 from tests.support.descent import stand_on
 from tests.support.flights import NOON, begun, fly_out, scripted
 
@@ -191,8 +191,8 @@ def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
     wanted = ["90.json", "50.json", "40.json", "30.json", "20.json", "p", "w6.0", "w7.0", "w5.0", "w8.0"]
     assert [line.file for line in best(lines)] == wanted
     elsewhere = [entry(score=100, **kind) for kind in ({"spawn": "rung_3"}, {"course": "night"}, {"alone": False})]
-    assert best_alone([*lines, *elsewhere]) == 99
-    assert best_alone([]) == 0
+    assert Goals([*lines, *elsewhere]).best == 99
+    assert Goals([]).best == 0
 
 
 def test_a_flight_of_another_version_is_refused_by_name_and_left_where_it_is(kept: Records):

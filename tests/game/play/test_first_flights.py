@@ -18,8 +18,7 @@ from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
-from game.flight.goals import Goals
-from game.flight.logbook import ladder_rung
+from game.flight.logbook import Goals, ladder_rung
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.ending import FlownPath
 from game.scenes.play.free import FreeFlight
