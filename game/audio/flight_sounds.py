@@ -9,12 +9,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.sensing import near_edges
 from game.audio.mixer import Sound
 
-_ENDS: Final = {
-    Outcome.LANDED: "landed",
-    Outcome.CRASHED: "crash",
-    Outcome.OUT_OF_BOUNDS: "lost",
-    Outcome.TIMED_OUT: "lost",
-}
+_ENDS: Final = {Outcome.LANDED: "landed", Outcome.CRASHED: "crash"}  # any other flight is lost
 _HARD_BRAKING: Final = 0.8  # share of the greatest deceleration above which a fall is warned of
 _REACTION: Final = 0.4  # reaction time of a warned pilot in seconds
 _WARN_TILT_BELOW: Final = 6.0  # metres
@@ -23,20 +18,11 @@ _WARN_EVERY: Final = 40  # steps
 
 
 class FlightSound:
-    """Sounds of one lander of an environment; call `follow` once in every step.
-
-    Args:
-        sound: the mixer.
-        env: the landers' environment.
-        warns: whether to warn of a likely crash.
-
-    """
+    """Sounds of one lander of an environment, which may warn of a likely crash; call `follow` once in every step."""
 
     def __init__(self, sound: Sound, env: LanderEnv, *, warns: bool = True) -> None:
         self._sound, self._env, self._warns = sound, env, warns
-        self._slot = -1
-        self._time = 0.0
-        self._outcome = Outcome.FLYING
+        self._slot, self._time, self._outcome = -1, 0.0, Outcome.FLYING
         self._rest = self._turn = 0
 
     def follow(self, thrust: Doubles, slot: int = 0) -> None:
@@ -49,7 +35,7 @@ class FlightSound:
             self._sound.loop(key, force)
         self._touch()
         outcome = Outcome(int(env.outcome[slot]))
-        if outcome is not self._outcome and outcome in _ENDS:
+        if outcome not in (self._outcome, Outcome.FLYING):
             self._end(outcome)
         self._outcome = outcome
         if outcome is Outcome.FLYING and self._warns:
@@ -65,22 +51,19 @@ class FlightSound:
 
     def _end(self, outcome: Outcome) -> None:
         """Play the sound of an ending; a craft that is whole beside the pad is set down, and lost its landing."""
-        if self._env.intact[self._slot]:
-            self._sound.play("touchdown", 0.15 + 0.85 * float(self._env.impact[self._slot, 0]) / self._touch_speed)
+        env, slot = self._env, self._slot
+        if env.intact[slot]:
+            self._sound.play("touchdown", 0.15 + 0.85 * float(env.impact[slot, 0]) / env.limits.touch_speed)
             self._sound.play("lost")
         else:
-            self._sound.play(_ENDS[outcome])
-
-    @property
-    def _touch_speed(self) -> float:
-        return self._env.limits.touch_speed
+            self._sound.play(_ENDS.get(outcome, "lost"))
 
     def _touch(self) -> None:
         """Play a thud for every foot that touches, as loud as its speed; and the contact note, once."""
         env, slot = self._env, self._slot
         down = env.feet_down[slot]
         if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
-            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / self._touch_speed))
+            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / env.limits.touch_speed))
             if not self._touched:
                 self._sound.play("contact")
             self._touched = True

@@ -26,20 +26,12 @@ _DETUNED: Final = 2 ** (9 / 1200) - 1  # standard deviation of a choir's tuning:
 
 @dataclass(frozen=True)
 class Instrument:
-    """Recipe of one sound: how it is made and mixed.
+    """Recipe of one sound: how it is made and mixed."""
 
-    Attributes:
-        make: returns the sound, mono or stereo, at any level.
-        group: the volume group, one of GROUPS.
-        level: its peak, in dB below full scale.
-        loops: whether it repeats without a seam.
-
-    """
-
-    make: Callable[[np.random.Generator], Signal]
-    group: str
-    level: float
-    loops: bool = False
+    make: Callable[[np.random.Generator], Signal]  # returns the sound, mono or stereo, at any level
+    group: str  # the volume group, one of GROUPS
+    level: float  # its peak, in dB below full scale
+    loops: bool = False  # whether it repeats without a seam
 
     def render(self, key: str) -> NDArray[np.int16]:
         """Return the sound as 16-bit stereo (n, 2) for the mixer; the same every time for the same key."""
@@ -99,12 +91,7 @@ def _lost(rng: np.random.Generator) -> Signal:
 
 
 def _crash(rng: np.random.Generator) -> Signal:
-    """Crash: a blast in a large room."""
-    return synth.room(rng, _blast(rng), 2.2, 0.4)
-
-
-def _blast(rng: np.random.Generator) -> Signal:
-    """Blast: noise that grows duller as it fades, a low thud, and fragments that fall one by one."""
+    """Crash, in a large room: noise that grows duller as it fades, a low thud, and fragments that fall one by one."""
     bands = ((low_pass(160, 1), 1.0, 2.0), (band_pass(120, 900, 1), 0.5, 0.9), (band_pass(700, 3200, 1), 0.16, 0.3))
     blast = sum(gain * synth.noise(rng, 2.4, shape) * strike(2.4, 0.004, dies) for shape, gain, dies in bands)
     blow = sine(glide(84, 31, 1.2, 0.12), 1.2) * strike(1.2, 0.004, 1.1)
@@ -113,11 +100,10 @@ def _blast(rng: np.random.Generator) -> Signal:
         rows = ((1, 1, 0.14), (1.58, 0.6, 0.10), (2.92, 0.3, 0.06))
         fragment = partials(float(rng.uniform(340, 1250)), rows, 0.2) * edges(0.2, 0.002, 0.02)
         quieter = float(rng.uniform(0.4, 1.0)) * 0.3 ** float(delay)
-        fragments.append(
-            synth.place(synth.late(0.16 * quieter * fragment, float(delay)), float(rng.uniform(-0.7, 0.7)))
-        )
+        fallen = synth.late(0.16 * quieter * fragment, float(delay))
+        fragments.append(synth.place(fallen, float(rng.uniform(-0.7, 0.7))))
     body = together(synth.place(np.asarray(blast), 0.0), synth.place(1.7 * blow, 0.0), *fragments)
-    return np.tanh(body)  # slight overdrive: dense, not sharp
+    return synth.room(rng, np.tanh(body), 2.2, 0.4)  # slight overdrive: dense, not sharp
 
 
 # Warnings

@@ -74,7 +74,8 @@ def noise(rng: np.random.Generator, seconds: float, gain: Gain) -> Signal:
     spectrum = np.zeros(count // 2 + 1, np.complex128)
     frequency: Signal = np.fft.rfftfreq(count, 1 / RATE)[1:].astype(np.float64)
     spectrum[1:] = gain(frequency) * np.exp(2j * np.pi * rng.random(len(frequency)))
-    return unit(np.asarray(np.fft.irfft(spectrum, count), np.float64))
+    loop = np.asarray(np.fft.irfft(spectrum, count), np.float64)
+    return np.asarray(loop / np.sqrt(np.mean(loop**2)))
 
 
 # Envelopes
@@ -132,12 +133,6 @@ def room(rng: np.random.Generator, signal: Signal, seconds: float, wet: float) -
 
 
 # Levels
-
-
-def unit(signal: Signal) -> Signal:
-    """Return a signal of root mean square 1; silence stays silence."""
-    mean = np.sqrt(np.mean(signal**2))
-    return np.asarray(signal / mean if mean else signal)
 
 
 def at_peak(signal: Signal, level: float) -> Signal:

@@ -10,22 +10,17 @@ import pygame
 from ai.lander.push import STEPS, Push
 from game.input.bindings import TRIGGERS, Bindings, Command, Held
 
-# Axis, direction, how far out of 32767 it must be pushed.
-AXES: Final[dict[Held, tuple[int, int, int]]] = {
-    Held.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1, 11000),
-    Held.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1, 11000),
+# Commands of a stick that is pushed to the left or up, and to the right or down.
+STICK_COMMANDS: Final[dict[int, tuple[Command, Command]]] = {
+    pygame.CONTROLLER_AXIS_LEFTX: (Command.LEFT, Command.RIGHT),
+    pygame.CONTROLLER_AXIS_LEFTY: (Command.UP, Command.DOWN),
+    pygame.CONTROLLER_AXIS_RIGHTX: (Command.SLOWER, Command.FASTER),
 }
-STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
-    Command.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1),
-    Command.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1),
-    Command.UP: (pygame.CONTROLLER_AXIS_LEFTY, -1),
-    Command.DOWN: (pygame.CONTROLLER_AXIS_LEFTY, 1),
-    Command.SLOWER: (pygame.CONTROLLER_AXIS_RIGHTX, -1),
-    Command.FASTER: (pygame.CONTROLLER_AXIS_RIGHTX, 1),
-}
+TURN: Final = pygame.CONTROLLER_AXIS_LEFTX
+TURNS: Final = {Held.LEFT: -1, Held.RIGHT: 1}  # directions of that axis
 STICK_PUSHED: Final = 20000
 STICK_RELEASED: Final = 12000
-STICK_USED: Final = 11000  # beyond which a gamepad counts as used, by any of its sticks
+STICK_USED: Final = 11000  # out of 32767, beyond which a stick holds a control, and its gamepad counts as used
 TRIGGER_PRESSED: Final = 8000
 TRIGGER_RELEASED: Final = 5000
 _FARTHEST: Final = 32767
@@ -36,7 +31,6 @@ _TRIGGER: Final = (0.06, 0.95)
 _CURVE: Final = 1.5  # a stick near its rest turns the craft more finely
 _ENDS: Final = (-STEPS, 0, STEPS)  # shares that are always reached
 _TREMBLE: Final = 0.75  # of a step
-_TURN: Final = pygame.CONTROLLER_AXIS_LEFTX
 _RISE: Final = pygame.CONTROLLER_AXIS_RIGHTY
 
 
@@ -112,13 +106,11 @@ def shares(pads: Iterable[Axes], buttons: Bindings) -> tuple[float, float]:
     main = side = 0.0
     for axes in pads:
         pulled = {
-            held: max(
-                (axes.trigger(axis) for axis, code in TRIGGERS.items() if code in buttons.codes(held)), default=0.0
-            )
+            held: max(axes.trigger(axis) * (code in buttons.codes(held)) for axis, code in TRIGGERS.items())
             for held in (Held.MAIN, Held.LEFT, Held.RIGHT)
         }
         main = max(main, pulled[Held.MAIN], -axes.stick(_RISE))
-        side = max(side, axes.stick(_TURN) + pulled[Held.RIGHT] - pulled[Held.LEFT], key=abs)
+        side = max(side, axes.stick(TURN) + pulled[Held.RIGHT] - pulled[Held.LEFT], key=abs)
     return main, side
 
 

@@ -116,24 +116,14 @@ def _named(prefix: str) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class Device:
-    """Bindings and rules of one kind of device, keyboards or gamepads.
+    """Bindings and rules of one kind of device, keyboards or gamepads."""
 
-    Attributes:
-        standard: default bindings that can be changed.
-        fixed: bindings that cannot be changed.
-        spare: meaning of a key in menus while it is bound to nothing else.
-        taken: keys that no command may be bound to.
-        engines: keys that an engine may have although menus or screens use them.
-        names: codes by name.
-
-    """
-
-    standard: Table
-    fixed: Table
-    spare: Mapping[int, Command]
-    taken: frozenset[int]
-    engines: frozenset[int]
-    names: Mapping[str, int]
+    standard: Table  # default bindings that can be changed
+    fixed: Table  # bindings that cannot be changed
+    spare: Mapping[int, Command]  # meaning of a key in menus while it is bound to nothing else
+    taken: frozenset[int]  # keys that no command may be bound to
+    engines: frozenset[int]  # keys that an engine may have although menus or screens use them
+    names: Mapping[str, int]  # codes by name
 
 
 KEYBOARD: Final = Device(KEYS, FIXED_KEYS, _SPARE_KEYS, _TAKEN_KEYS, _ENGINE_KEYS, _named("K_"))
@@ -154,7 +144,11 @@ class Bindings:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self.table: dict[Meaning, tuple[int, ...]] = dict(device.standard)
+        self.reset()
+
+    def reset(self) -> None:
+        """Restore the defaults."""
+        self.table: dict[Meaning, tuple[int, ...]] = dict(self.device.standard)
         self._index()
 
     def codes(self, meaning: Meaning) -> tuple[int, ...]:
@@ -180,11 +174,6 @@ class Bindings:
         """Bind a key to a meaning, and unbind it from any other."""
         self.table = {other: _without(codes, {code}) for other, codes in self.table.items()}
         self.table[meaning] = (code,)
-        self._index()
-
-    def reset(self) -> None:
-        """Restore the defaults."""
-        self.table = dict(self.device.standard)
         self._index()
 
     def to_dict(self) -> dict[str, list[str]]:

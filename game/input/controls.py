@@ -34,7 +34,7 @@ _MODIFIERS: Final = {
     pygame.KMOD_META: (pygame.K_LMETA, pygame.K_RMETA),
 }
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
-_STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
+_STANDARD: Final = Bindings(KEYBOARD), Bindings(PAD)
 
 
 def translate(event: pygame.event.Event) -> Command | None:
@@ -45,7 +45,7 @@ def translate(event: pygame.event.Event) -> Command | None:
     if hasattr(event, "command"):
         command: Command | None = event.command
         return command
-    return _command(event, _STANDARD[pygame.KEYDOWN], _STANDARD[pygame.CONTROLLERBUTTONDOWN])
+    return _command(event, *_STANDARD)
 
 
 def presses_main(event: pygame.event.Event) -> bool:
@@ -111,7 +111,7 @@ class Controls:
         listening: whether the next press is to be bound; it gives no command.
         spelling: whether text is being entered: a key that types a character gives no command.
         used_pad: number of the gamepad that was used last; None while the keyboard is in use.
-        pad_name: reported name of the gamepad plugged in last; empty if it was unplugged at once.
+        gamepad_name: reported name of the gamepad plugged in last; empty if it was unplugged at once.
 
     """
 
@@ -138,12 +138,6 @@ class Controls:
     def main(self) -> bool:
         """Whether the main engine's control is held."""
         return self.holds(Held.MAIN)
-
-    @property
-    def steer(self) -> int:
-        """Steering: 0 for none or both, 1 for left, 2 for right."""
-        left, right = self.holds(Held.LEFT), self.holds(Held.RIGHT)
-        return 0 if left == right else (1 if left else 2)
 
     @property
     def shares(self) -> tuple[float, float]:
@@ -269,8 +263,8 @@ class Controls:
         buttons = set(self.buttons.codes(held)) - (set() if axes else set(TRIGGERS.values()))
         if self._down(self.keys.codes(held), buttons):
             return True
-        axis, direction, threshold = analogue.AXES.get(held, (-1, 0, 0))
-        return axes and any(direction * pad.axes.value(axis) > threshold for pad in self._pads.values())
+        way = analogue.TURNS.get(held, 0)
+        return axes and any(way * pad.axes.value(analogue.TURN) > analogue.STICK_USED for pad in self._pads.values())
 
     def _down(self, keys: Iterable[int], buttons: Iterable[int]) -> bool:
         return not self._keys.isdisjoint(keys) or any(
@@ -310,14 +304,10 @@ class Controls:
             self._pull(event, pad, TRIGGERS[event.axis], value)
         elif abs(value) > analogue.STICK_USED:
             self._use(event)
-        for command, (axis, direction) in analogue.STICK_COMMANDS.items():
-            if axis != event.axis:
-                continue
-            push = direction * value
+        for command, push in zip(analogue.STICK_COMMANDS.get(event.axis, ()), (-value, value), strict=False):
             if push > analogue.STICK_PUSHED and command not in pad.pushed:
                 pad.pushed.add(command)
                 event.command = command
-                self._use(event)
             elif push < analogue.STICK_RELEASED:
                 pad.pushed.discard(command)
 

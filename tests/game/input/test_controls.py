@@ -21,7 +21,8 @@ def hold(controls: Controls, *keys: int) -> None:
 
 def held(controls: Controls) -> int:
     """What is held of the engines, as the action that flies so."""
-    return 3 * controls.main + controls.steer
+    left, right = controls.holds(Held.LEFT), controls.holds(Held.RIGHT)
+    return 3 * controls.main + (left - right) % 3
 
 
 def test_held_keys_make_the_action_and_losing_focus_lets_go_of_everything():
