@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import pygame
 
+from ai.nn import ModelFormatError
 from game.core.scene import Pop, Push, Quit, Replace, Route, Scene, Transition
 
 if TYPE_CHECKING:
@@ -81,19 +82,24 @@ class SceneManager:
             canvas.surface.blit(self._lingering, (0, 0), special_flags=pygame.BLEND_PREMULTIPLIED)
 
     def apply(self, transition: Transition | None) -> None:
-        """Apply a transition that a scene returned, and play its sound."""
+        """Apply a transition that a scene returned, and play its sound.
+
+        A scene whose network cannot be read is not entered: a message says why.
+        """
         if transition is not None:
             self._context.sound.play("back" if isinstance(transition, Pop) else "choose")
             self._linger()
         match transition:
-            case Push(scene):
-                scene = self._made(scene)
-                if self.stack:
+            case Push(wanted) | Replace(wanted):
+                try:
+                    scene = self._made(wanted)
+                except ModelFormatError as error:  # a network that comes with the game is damaged
+                    self._context.note(str(error))
+                    return
+                if isinstance(transition, Replace):
+                    self._leave(1)
+                elif self.stack:
                     self.top.exit()
-                self.stack.append(scene)
-            case Replace(scene):
-                scene = self._made(scene)
-                self._leave(1)
                 self.stack.append(scene)
             case Pop(levels):
                 self._pop(levels)

@@ -35,6 +35,7 @@ from typing import Any
 import numpy as np
 import pygame
 
+from ai.nn import ModelFormatError
 from game.core.assets import MODELS_DIR
 from game.core.scene import Pop, Push, Scene
 from game.core.settings import SettingsFile
@@ -182,8 +183,10 @@ class Monkey:
         self.events += 1
         try:
             scene = ALL[name](self.app.context) if name in ALL else OVER_OTHERS[name](scenes.top)
+        except ModelFormatError:  # which may be spoilt just now; the game says so, and stays where it is
+            return f"no {name}"
         except (OSError, ValueError):
-            if name not in _OF_FILES:  # which may be spoilt just now
+            if name not in _OF_FILES:
                 raise
             return f"no {name}"
         scenes.apply(Push(scene))

@@ -1,12 +1,16 @@
 """The path: its list, a chapter's page that grows, progress, and every way to move through it."""
 
 import re
+import shutil
 from collections.abc import Callable
+from pathlib import Path
 
 import pygame
 import pytest
 
 from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.core.scene import push
 from game.core.settings import Settings
 from game.scenes.learn import scene as chapter_scene
 from game.scenes.learn.list import LearnScene
@@ -196,3 +200,18 @@ def test_what_its_six_tries_have_shown_leaves_chapter_6_its_title(open_game: Ope
     driver.frames(5)
     assert driver.top.came is not None
     assert driver.top.panel.scrolled == 0
+
+
+@pytest.mark.parametrize(
+    ("key", "network"), [("choice", "lander/modern/online"), ("backwards", "digits/classic/network")]
+)
+def test_a_chapter_whose_network_is_damaged_is_not_entered_and_says_why(
+    open_game: Open, context: Context, tmp_path: Path, key: str, network: str
+):
+    context.models_dir = tmp_path / "models"
+    shutil.copytree(MODELS_DIR, context.models_dir)
+    (context.models_dir / network / "layer-0-bias.npy").write_bytes(b"")
+    driver = open_game(LearnScene)
+    driver.app.scenes.apply(push("chapter", key))
+    assert driver.top_name == "LearnScene"
+    assert "layer-0-bias.npy" in driver.said
