@@ -140,9 +140,10 @@ class DigitsScene(PanelScene):
     def _describe_more(self, column: Column) -> None:
         live = self.live
         names = [name for name in self.fixing.networks if name in live.classifiers or name not in live.problems]
-        index = names.index(self.chosen) if self.chosen in names else 0
-        column.choice(texts.DIGITS_READER, list(map(called, names)), index, lambda index: self._choose(names[index]))
-        column.gap()
+        if names:  # not where all are damaged
+            now = names.index(self.chosen) if self.chosen in names else 0
+            column.choice(texts.DIGITS_READER, list(map(called, names)), now, lambda index: self._choose(names[index]))
+            column.gap()
         column.caption(texts.DIGITS_SEES)
         column.picture(_TILE, self._draw_stages)
 

@@ -156,6 +156,9 @@ def test_damaged_networks_are_named_and_what_is_left_reads(open_game: Open, cont
     driver.key(pygame.K_3)
     assert scene(driver).probabilities is None
     assert set(scene(driver).live.problems) == {"modern", "classic"}
+    driver.press_on(texts.MORE[False])
+    driver.frames(2)
+    assert driver.top_name == "DigitsScene"
 
 
 def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, context: Context, monkeypatch):
