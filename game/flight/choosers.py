@@ -24,24 +24,14 @@ _STEERING: Final = ScriptedPilot()
 
 
 class Choice(NamedTuple):
-    """What is pushed in one step.
-
-    Attributes:
-        push: what is pushed.
-        by: who chose it: the person, if it is what they asked for.
-        decision: the network's own decision, or the one that it shares with the person; None without one.
-        asked: what the person asked for.
-        overridden: whether something else is flown than that.
-        likely: how likely each pad is meant, (pads,), for the flight to aim anew; None to aim as before.
-
-    """
+    """What is pushed in one step."""
 
     push: Push
-    by: StickHolder
-    decision: Decision | SharedDecision | None = None
-    asked: Push = _NOTHING
-    overridden: bool = False
-    likely: Doubles | float | None = None
+    by: StickHolder  # who chose it: the person, if it is what they asked for
+    decision: Decision | SharedDecision | None = None  # the network's own, or the one it shares with the person
+    asked: Push = _NOTHING  # what the person asked for
+    overridden: bool = False  # whether something else is flown than that
+    likely: Doubles | float | None = None  # how likely each pad is meant, (pads,), to aim anew; None to aim as before
 
     @property
     def together(self) -> SharedDecision | None:

@@ -28,24 +28,14 @@ _MOST_READ: Final = 10  # files that are read to find the best flight of a day
 
 @dataclass(frozen=True)
 class Attempt:
-    """First attempt at a start of the day.
+    """First attempt at a start of the day."""
 
-    Attributes:
-        day: the day, as in 2026-11-22.
-        outcome: name of an Outcome; FLYING if it was left before its end.
-        intact: whether it came down whole beside the pad.
-        score: points.
-        barred: why it does not count as the player's own, as in the logbook; empty if it does.
-        file: name of the flight's file.
-
-    """
-
-    day: Annotated[str, Sized(10, 10), date.fromisoformat]
-    outcome: Annotated[str, OneOf(Outcome.__members__)] = Outcome.FLYING.name
+    day: Annotated[str, Sized(10, 10), date.fromisoformat]  # as in 2026-11-22
+    outcome: Annotated[str, OneOf(Outcome.__members__)] = Outcome.FLYING.name  # FLYING if it was left before its end
     score: Count = 0
-    barred: Annotated[str, Sized(40)] = ""
-    file: Annotated[str, Sized(255)] = ""
-    intact: bool = False
+    barred: Annotated[str, Sized(40)] = ""  # why it does not count, as in the logbook; empty if it does
+    file: Annotated[str, Sized(255)] = ""  # name of the flight's file
+    intact: bool = False  # whether it came down whole beside the pad
 
     @property
     def line(self) -> str:

@@ -135,7 +135,7 @@ class ToggleRow(RowWidget):
 
 
 class SliderRow(RowWidget):
-    """Slider: its label on the left or above, the figure at the right end, an explanation below."""
+    """Slider: its label on the left or above, the figure at the right end."""
 
     by_arrows = True
     colour: Colour = NET
@@ -149,11 +149,10 @@ class SliderRow(RowWidget):
         *,
         step: float,
         figure: Callable[[float], str],
-        aside: str = "",
     ) -> None:
         super().__init__(NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
-        self._step, self._figure, self._aside = step, figure, aside
+        self._step, self._figure = step, figure
         self._track = (0.0, 1.0)
 
     @property
@@ -201,8 +200,6 @@ class SliderRow(RowWidget):
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size
-        if self._aside:
-            cursor.aside(self._aside)
 
 
 class ChoiceRow(RowWidget):
