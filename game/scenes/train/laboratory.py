@@ -24,7 +24,8 @@ class Laboratory:
 
     Attributes:
         page: which one is shown in the panel; "" for none, so that the knobs are seen.
-        sabotage: the experiment that flies or flew last, or is about to; "" before the first.
+        sabotage: the experiment that flies or flew last; "" before the first.
+        asked: the one of which the player is asked.
         guess: the player's.
         came: what has come of it; None while it is too early to say. It is said once, and stays.
 
@@ -37,7 +38,7 @@ class Laboratory:
     def __init__(self, run: TrainingRun, start: Callable[[str], None]) -> None:
         self._run, self._start = run, start
         self.page: Literal["", "picks", "guess", "result"] = ""
-        self.sabotage = ""
+        self.sabotage = self.asked = ""
         self.guess: Verdict | None = None
         self.came: Verdict | None = None
         self._figures = ""  # what both had landed at the verdict
@@ -46,7 +47,7 @@ class Laboratory:
     @property
     def key(self) -> Hashable:
         """What decides which rows there are."""
-        return self.page, self.sabotage, self.came
+        return self.page, self.sabotage, self.asked, self.came
 
     @property
     def name(self) -> str:
@@ -92,20 +93,24 @@ class Laboratory:
 
     def _ask(self, sabotage: str) -> None:
         """Ask for a guess at what a sabotage will do."""
-        self.sabotage, self.page = sabotage, "guess"
+        self.asked, self.page = sabotage, "guess"
 
     def _guess(self, column: Column) -> None:
-        column.text(self.name, size=TITLE)
-        column.aside(texts.SABOTAGES[self.sabotage][1])
+        name, what = texts.SABOTAGES[self.asked]
+        column.text(name, size=TITLE)
+        column.aside(what)
         column.gap()
         column.text(texts.LAB_ASK, size=SMALL)
+        run = self._run
+        if not run.twin and len(run.history) and (run.alive or run.kept):
+            column.aside(texts.LAB_KEPT)
         for kind in VERDICTS:
             column.button(texts.LAB_GUESSES[kind], partial(self.fly, kind), colour=HUMAN)
         column.button(texts.BACK, self.open)
 
     def fly(self, guess: Verdict) -> None:
-        """Fly the sabotage that was chosen, with a guess."""
-        self.guess, self.came = guess, None
+        """Fly the sabotage that was asked of, with a guess."""
+        self.guess, self.came, self.sabotage = guess, None, self.asked
         self._start(self.sabotage)
         self.open()
 

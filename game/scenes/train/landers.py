@@ -27,7 +27,7 @@ from game.scenes.train.inside import Inside
 from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout, Status
 from game.scenes.train.rewind import Rewind
-from game.scenes.train.swarms import HEAD, Swarms
+from game.scenes.train.swarms import Swarms
 from game.scenes.train.view import Pointer, View
 from game.training.library import Library
 from game.training.run import PACES
@@ -90,8 +90,7 @@ class LanderView(View):
 
     @property
     def titled(self) -> bool:  # type: ignore[override]
-        """Whether there is room for the title: over two swarms, it would lie on what says the same."""
-        return self.run.twin is None or self.swarms.box.height > 2 * HEAD
+        return self.swarms.titled
 
     @property
     def first(self) -> Sequence[str]:
@@ -189,8 +188,11 @@ class LanderView(View):
         nowhere, charts = (0, 0, 1, 1), self.scene.charts
         if self.fills:
             return [(VirtualPointer(nowhere, self.inside.follow), lambda: self.inside.view.box)]
+        landers = (VirtualPointer(nowhere, self.follow_unused, hold=texts.LESSON_MARK), lambda: self.swarms.box)
+        if not self.scene.charted:
+            return [landers]
         return [
-            (VirtualPointer(nowhere, self.follow_unused, hold=texts.LESSON_MARK), lambda: self.swarms.box),
+            landers,
             (VirtualPointer(nowhere, charts.follow), lambda: charts.box),
             (Scrubber(charts, self._scrub, self._duel), lambda: charts.box),
         ]

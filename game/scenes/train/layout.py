@@ -15,6 +15,7 @@ from game.ui.hints import Hint, HintRow
 
 _SAID: Final = 32.0  # points below a chart, for what is said of it
 _SIDE: Final = (320.0, 422.0)  # width of the panel at least and at most
+MARGIN: Final = 32.0  # of the panel at either side
 _WIDE: Final = 680.0  # points of a window from which the panel stands beside the display
 _BELOW: Final = 0.4  # share of a tall window for the panel
 _MARGIN: Final = 28.0
@@ -22,6 +23,8 @@ _CHART: Final = (70.0, 172.0)  # height of a chart at least and at most
 _CHARTS: Final = 0.31  # share of the display for the charts
 _TITLE: Final = (24.0, 16.0)  # corner of the title over the display
 _WIDEST: Final = 372.0
+FLIGHTS: Final = 160.0  # height that two swarms keep, before charts and title
+NAMES: Final = 60.0  # of the words below each of them
 _LOW: Final = 200.0  # points of the display above the charts, in which the title is its figure alone
 _FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
 
@@ -32,7 +35,7 @@ class Layout(NamedTuple):
     Attributes:
         display: what is seen of the run.
         swarm: its upper part, above the charts.
-        charts: a box for both charts, with room for a caption below.
+        charts: a box for both charts, with room for a caption below; none where they would leave two swarms too little.
         panel: beside or below the display.
 
     """
@@ -43,8 +46,8 @@ class Layout(NamedTuple):
     panel: pygame.FRect
 
 
-def layout(view: pygame.FRect) -> Layout:
-    """Lay a window out in points."""
+def layout(view: pygame.FRect, *, pair: bool = False) -> Layout:
+    """Lay a window out in points, for one swarm or a pair."""
     display, panel = pygame.FRect(0, 0, *view.size), pygame.FRect(0, 0, *view.size)
     if view.width >= _WIDE and view.width > view.height:
         panel.width = min(max(0.33 * view.width, _SIDE[0]), _SIDE[1])
@@ -55,6 +58,8 @@ def layout(view: pygame.FRect) -> Layout:
     height = min(max(_CHARTS * display.height - _SAID, _CHART[0]), _CHART[1])
     top, width = display.bottom - height - _SAID - 8, (display.width - 3 * _MARGIN) / 2
     boxes = tuple(pygame.FRect(left, top, width, height) for left in (_MARGIN, 2 * _MARGIN + width))
+    if pair and top - 14 < FLIGHTS + NAMES:
+        return Layout(display, display.copy(), (), panel)
     return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)
 
 
@@ -62,8 +67,10 @@ def _title_width(place: Layout) -> float:
     return min(_WIDEST, place.display.width - 2 * _TITLE[0])
 
 
-def hint_row(place: Layout, hints: Sequence[Hint]) -> HintRow:
-    """Return the hints that stand beside the title."""
+def hint_row(place: Layout, hints: Sequence[Hint], *, titled: bool) -> HintRow:
+    """Return the hints that stand beside the title, or without one, in the corner of the panel."""
+    if not titled:
+        return HintRow(hints, (place.panel.right - MARGIN, place.panel.bottom - 22), from_right=True)
     return HintRow(hints, (_TITLE[0] + _title_width(place) - 16, _TITLE[1] + 30), from_right=True)
 
 
@@ -85,6 +92,9 @@ class Status(NamedTuple):
         (left, top), width, low = _TITLE, _title_width(place), is_low(place)
         if low and not self.figure:
             return
+        if low:  # no wider than its words: below it are landers
+            words = canvas.text_width(self.words, size=SMALL) + 2.0 * _FIGURE[0]
+            width = min(width, words + 60)
         size = min(max(_FIGURE[2] * place.swarm.height, _FIGURE[0]), _FIGURE[1])
         cursor = Cursor(left + 16, top + (2 if low else 10), width - 32, canvas.scale)
         begun = cursor.y

@@ -19,7 +19,7 @@ from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train import knobs
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.landers import LanderView
-from game.scenes.train.layout import Layout, hint_row, is_low, layout
+from game.scenes.train.layout import MARGIN, Layout, hint_row, is_low, layout
 from game.training.run import PACES, TrainingRun
 from game.training.run_settings import RunSettings
 from game.ui.actions import Action, Table
@@ -35,9 +35,8 @@ if TYPE_CHECKING:
     from game.scenes.train.view import View
     from game.ui.rows import ButtonRow
 
-_MARGIN: Final = 32.0  # of the panel
 _FOOT: Final = 0.8  # share of the panel that its foot takes at most
-_LOW: Final = 220.0  # points of height, below which the foot scrolls with all else
+_LOW: Final = 100.0, 220.0  # points of height below which the foot scrolls with the knobs, and with a page
 _LOOKS: Final = 10  # frames from one look at the run to the next
 MORE: Final = "more"  # what a player can open: the words for all else
 
@@ -126,19 +125,34 @@ class TrainScene(FormScene):
     @property
     def _room(self) -> pygame.FRect:
         """Room of the panel, with its foot."""
-        return layout(self.context.reading().view).panel.inflate(-2 * _MARGIN, -2 * 20.0)
+        panel = self._place.panel
+        return panel.inflate(-2 * MARGIN, -2 * min(20.0, 0.07 * panel.height))
+
+    @property
+    def _place(self) -> Layout:
+        return layout(self.context.reading().view, pair=self.run.twin is not None)
+
+    @property
+    def charted(self) -> bool:
+        """Whether the charts are seen."""
+        return not self.view.fills and bool(self._place.charts)
+
+    @property
+    def _titled(self) -> bool:
+        """Whether the title is more than its figure."""
+        return not self.view.fills and self.view.titled and not is_low(self._place)
 
     @property
     def _low(self) -> bool:
         """Whether there is so little room that all rows scroll, those of the foot too."""
-        return self._room.height < _LOW
+        return self._room.height < _LOW[bool(self._shown_page)]
 
     def state(self) -> Hashable:
         run = self.run
         return (
             self._settings.opened, self._all_knobs, self.knobs.asked, self.knobs.problem, self.knobs.waits,
             self.view.key, self.view.first, bool(self.view.beside), bool(run.problem), run.alive, run.stopping,
-            bool(self.view.unfinished), self._low,
+            bool(self.view.unfinished), self._low, self.charted,
         )  # fmt: skip
 
     def _describe(self, column: Column) -> None:
@@ -183,7 +197,8 @@ class TrainScene(FormScene):
             column.button(
                 texts.TRAIN_GO_ON, partial(self.start, settings.asked, 0, run.collection.unsaved), words, colour=HUMAN
             )
-        column.gap()
+        if column is self.panel or not is_low(self._place):
+            column.gap()
         anew = [(texts.TRAIN_ANEW, self._begin)] if run.alive and not run.stopping else []
         undo = [(texts.KNOBS_UNDO, settings.undo)] if settings.waits else []
         self.start_button, *others = column.words([(self._start_label, self._toggle), *anew, *undo], TITLE, INK)
@@ -194,10 +209,11 @@ class TrainScene(FormScene):
     def lay_out(self) -> None:
         """Lay everything out for the window as it is."""
         canvas = self.context.reading()
-        place = layout(canvas.view)
+        place = self._place
         if place != self._layout:
             self._layout = place
-            self.charts.place(place.charts)
+            if place.charts:
+                self.charts.place(place.charts)
             self.view.place(place)
             for widget, box in self._pointed:
                 widget.relative_rect = widget.rect = pygame.Rect(box())
@@ -234,13 +250,13 @@ class TrainScene(FormScene):
         return [self.form.goes_back(back), Action(Command.HANDOVER, self._toggle), self.explained.action()]
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        return [hint_row(self._layout, self.hints[:1])] if self._layout else []
+        return [hint_row(self._layout, self.hints[:1], titled=self._titled)] if self._layout else []
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Go on explaining; scroll the panel by the wheel; everything else is the view's and the form's."""
         if self.explained.handle_event(event):
             return None
-        if not self.view.fills:
+        if self.charted:
             self.charts.follow(event)
         self.view.follow(event)
         outcome = super().handle_event(event)
@@ -364,20 +380,16 @@ class TrainScene(FormScene):
         self.view.draw(canvas, alpha)
         if not self.view.fills:
             canvas.fill(canvas.rect(display.left, box.bottom, display.width, display.bottom - box.bottom), NIGHT0)
-            self.charts.draw(canvas)
+            if self._layout.charts:
+                self.charts.draw(canvas)
             canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
             if self.view.titled:
-                self.draw_title(canvas)
+                self.status.draw(canvas, self._layout)
         canvas.fill(canvas.rect(*self._layout.panel), PANEL)
         self.panel.draw(canvas)
         if self._foot is not self.panel:
             self._foot.draw(canvas)
         self.form.draw(canvas)
-        self.explained.draw(canvas)
-
-    def draw_title(self, canvas: Canvas) -> None:
-        """Draw what the run has come to, over the display."""
-        assert self._layout is not None
-        self.status.draw(canvas, self._layout)
-        if not is_low(self._layout):
+        if self._titled or self._foot is not self.panel:
             self.draw_hints(canvas)
+        self.explained.draw(canvas)

@@ -13,13 +13,13 @@ from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT
+from game.scenes.train.layout import FLIGHTS, NAMES
 from game.scenes.train.rewind import Rewind
 from game.training.run import TrainingRun
 from game.ui.curves import BESIDE
 from game.world.swarm import LearningSwarm
 
-HEAD: Final = 130.0  # points of the box, for the title above two swarms
-_SAID: Final = 66.0  # height of the words below each half
+_HEAD: Final = 130.0  # points of the box, for the title above two swarms
 _MARGIN: Final = 28.0
 
 
@@ -49,12 +49,17 @@ class Swarms:
     def _runs(self) -> Sequence[TrainingRun]:
         return (self._run, self._run.twin) if self._run.twin else (self._run,)
 
+    @property
+    def titled(self) -> bool:
+        """Whether there is room for the title: two swarms need more of it."""
+        return self._run.twin is None or self.box.height >= _HEAD + FLIGHTS + NAMES
+
     def place(self, box: pygame.FRect) -> None:
         """Move to another box."""
-        head = min(HEAD, 0.4 * box.height)
         self.box, self._pictures = box, []
+        head = min(_HEAD, 0.4 * box.height) if self.titled else 0.0
         self._halves = pygame.FRect(box.left, box.top + head, box.width, box.height - head)
-        half = pygame.FRect(0, 0, box.width / 2, max(self._halves.height - _SAID, 1.0))
+        half = pygame.FRect(0, 0, box.width / 2, max(self._halves.height - NAMES, 1.0))
         for swarm in self.both:
             swarm.place(half if self._run.twin else box)
             swarm.head = 0.0 if self._run.twin else head
@@ -113,7 +118,7 @@ class Swarms:
 
     def _write(self, canvas: Canvas, left: float, number: int, run: TrainingRun, name: str, share: int | None) -> None:
         """Write a run's name and the share that lands below its swarm."""
-        width, top = self._halves.width / 2 - 2 * _MARGIN, self._halves.bottom - _SAID + 6
+        width, top = self._halves.width / 2 - 2 * _MARGIN, self._halves.bottom - NAMES + 6
         colour = (NET, BESIDE[0])[number]
         cursor = Cursor(left + _MARGIN, top, width, canvas.scale, canvas, size=TEXT, colour=colour)
         cursor.pair(name, "" if share is None else texts.SPLIT_LANDED.format(percent=share))

@@ -18,6 +18,7 @@ from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.learn.scene import ChapterScene
+from game.scenes.train.layout import FLIGHTS
 from game.training.library import Library
 from game.training.run import AHEAD
 from tests.support.driver import Driver
@@ -164,9 +165,20 @@ def test_the_lab_asks_for_a_guess_flies_both_and_goes_on_with_the_run(train: Dri
     train.press_on(texts.BACK)
     train.frames(1)
     split(train, "no_exploration")
+    laboratory._ask("no_replay")
+    train.frames(1)
+    assert laboratory.name == texts.SABOTAGES["no_exploration"][0], "which is what still flies"
     train.press_on(texts.TRAIN_ANEW)
     train.frames(2)
     assert laboratory.page == "", "another run has begun"
+
+
+@pytest.mark.parametrize("size", [(1024, 768), (800, 600), (1280, 720)])
+def test_an_experiment_leaves_room_for_the_flights_at_the_largest_text(train: Driver, size: tuple[int, int]) -> None:
+    train.write_in("largest")
+    train.resize(size)
+    split(train, "no_replay")
+    assert all(swarm.box.height >= FLIGHTS for swarm in train.top.view.swarms.both)
 
 
 def test_a_verdict_is_given_once_with_the_numbers_it_goes_by(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -111,6 +111,6 @@ def test_nothing_shows_through_the_title(open_game: Callable[..., Driver], first
     for behind in ("black", "white"):
         canvas = Canvas(pygame.Surface((1280, 720)))
         canvas.surface.fill(behind)
-        driver.top.draw_title(canvas)
+        driver.top.status.draw(canvas, driver.top._layout)
         pictures.append(pygame.image.tobytes(canvas.surface.subsurface((40, 26, 300, 34)), "RGB"))
     assert pictures[0] == pictures[1]
