@@ -42,6 +42,11 @@ class Explanations:
         decisions = self._training.agent.decisions - len(actions)
         self._decided.append(_Decided(decisions, self._training.observation, actions, result))
 
+    def aloft(self) -> int:
+        """Return the first lander that stood on no foot in all decisions kept; the first of all without one."""
+        stood = [each.observation[:, -2:].any(axis=1) for each in self._decided]
+        return int(np.argmin(np.any(stood, axis=0))) if stood else 0
+
     def explain(self, slot: int) -> Lesson:
         """Return the lesson of a lander's latest memory that is complete.
 

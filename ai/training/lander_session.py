@@ -109,9 +109,9 @@ class LanderSession(Session[Training]):
         self._tell_validation(self.training.validate())
         super().save(folder)
 
-    def _explain(self, slot: int) -> None:
-        """Explain the learning step of a lander's latest memory."""
-        self.messages.append(self._explanations.explain(slot))
+    def _explain(self, slot: int | None) -> None:
+        """Explain the learning step of a lander's latest memory; without one, of the most careful in the air."""
+        self.messages.append(self._explanations.explain(self._explanations.aloft() if slot is None else slot))
 
     def _restore(self, decisions: int) -> None:
         """Restore the networks from the history's checkpoint of a moment; time does not go back."""

@@ -19,8 +19,8 @@ class LessonDoor:
         self._shown = run.lesson
         self._asked = False
 
-    def ask(self, slot: int) -> None:
-        """Ask for the lesson of a lander."""
+    def ask(self, slot: int | None) -> None:
+        """Ask for the lesson of a lander; None for one in the air."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return

@@ -14,7 +14,6 @@ import pygame
 from ai.training.config import Config
 from ai.training.curves import caption
 from ai.training.experiments import differences, sabotaged
-from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Transition, push
 from game.core.worker import WorkerState
@@ -39,7 +38,7 @@ from game.ui.virtual_pointer import VirtualPointer
 if TYPE_CHECKING:
     from game.scenes.train.scene import TrainScene
 
-_OFFERED: Final = 1200  # frames for which a first landing is offered
+_SLOW: Final = 1200  # frames for which a run goes slowly from its first landing
 INSIDE: Final = "inside"  # what a player can open: the network
 
 
@@ -52,7 +51,7 @@ class LanderView(View):
         laboratory: the experiment that was chosen, and what came of it.
         inside: the network.
         rewind: the moment that is shown.
-        offers: for how many more frames a first landing can be stopped at.
+        offers: whether a first landing can be stopped at.
 
     """
 
@@ -68,7 +67,7 @@ class LanderView(View):
         self.inside = Inside(run, self.rewind)
         self.lessons = LessonDoor(run, self.context.note, self.context.rng)
         self.advice = Advice(run, scene.knobs)
-        self.offers = 0
+        self.offers, self._slow = False, 0
 
     @staticmethod
     def collection(user_dir: Path) -> Library:
@@ -144,7 +143,7 @@ class LanderView(View):
     @property
     def key(self) -> Hashable:  # type: ignore[override]
         begun, hint = len(self.run.history) > 0, self.advice.shown
-        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun, self.offers > 0
+        return self.laboratory.key, self.run.twin is None, self.moment is None, hint, begun, self.offers, self._slow > 0
 
     def describe_first(self, column: Column) -> None:
         self.rewind.describe(column)
@@ -244,38 +243,49 @@ class LanderView(View):
             part.clear()
         self.advice.adviser.reset()
         if self.offers:
-            self._fly_on()
+            self._withdraw()
 
     # What can be done
 
     def _offer(self) -> None:
-        """Offer once in a player's life to stop at a first landing, by one key."""
+        """Offer to stop at a first landing, by one key, until a player has answered once."""
         run, settings = self.run, self.context.settings
-        if run.first_landing and not settings.lesson_offered and run.state is WorkerState.RUNNING:
-            self.offers, settings.lesson_offered = _OFFERED, True
+        if run.first_landing and not (self.offers or settings.lesson_offered) and run.state is WorkerState.RUNNING:
+            self.offers, self._slow = True, _SLOW
             run.set_pace(PACES[0])  # or all would land before it is read
-            self.context.apply_settings()
             self.scene.build()
             self.scene.form.focus(next(each for each in self.scene.form.widgets if each.label == texts.LESSON_LOOK))
-        elif self.offers > 1 and run.alive:
-            self.offers -= 1
-        elif self.offers:
-            self._fly_on()
+        elif self.offers and not run.alive:
+            self._withdraw()
+        elif self._slow:
+            self._slow -= 1
+            if not self._slow:
+                self._hurry()
 
     def _look(self) -> Transition:
         assert self.run.first_landing is not None
-        self.offers = 0
+        self._fly_on()
         return push("lesson", self.run.first_landing.lesson, self.lessons)
 
     def _fly_on(self) -> None:
-        self.offers = 0
+        self.context.settings.lesson_offered = True
+        self._withdraw()
+
+    def _withdraw(self) -> None:
+        """Offer nothing any more."""
+        self.offers = False
+        self._hurry()
+
+    def _hurry(self) -> None:
+        """Go as fast as the player has chosen."""
+        self._slow = 0
         self.scene.set_pace(0 if self.context.settings.slow_runs else 1)
 
     def _ask_why(self) -> None:
-        """Ask for the lesson of the chosen lander, or of the one that explores least, as the run is now."""
+        """Ask for the lesson of the chosen lander, or of the one in the air that explores least, as the run is now."""
         chosen = self.swarms.shown.chosen
         self.rewind.clear()
-        self.lessons.ask(CAREFUL if chosen is None else chosen)
+        self.lessons.ask(chosen)
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

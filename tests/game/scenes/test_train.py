@@ -19,6 +19,7 @@ from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.explain.network_view import NetworkView
 from game.scenes.lesson.scene import LessonScene
+from game.scenes.train import landers
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import PACES, TrainingRun
@@ -103,7 +104,9 @@ def test_at_the_first_landing_it_offers_once_to_stop_and_look(
     assert texts.LESSON_LOOK not in [each.label for each in driver.form.widgets]
     assert driver.app.context.settings.lesson_offered, "never again"
     driver.app.context.settings.lesson_offered = False
-    driver.frames(2)
+    monkeypatch.setattr(landers, "_SLOW", 5)
+    driver.frames(20)
+    assert driver.choice(texts.TRAIN_PACES[0]).index == 1, "slowly for a while"
     driver.press_on(texts.LESSON_FLY_ON)
     driver.frames(2)
     assert driver.choice(texts.TRAIN_PACES[0]).index == 1, "as fast as before"

@@ -168,6 +168,7 @@ def test_the_lab_asks_for_a_guess_flies_both_and_goes_on_with_the_run(train: Dri
     laboratory._ask("no_replay")
     train.frames(1)
     assert laboratory.name == texts.SABOTAGES["no_exploration"][0], "which is what still flies"
+    laboratory.open()
     train.press_on(texts.TRAIN_ANEW)
     train.frames(2)
     assert laboratory.page == "", "another run has begun"
