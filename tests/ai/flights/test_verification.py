@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pytest
 
 from ai.flights.code import code_of, flight_of
 from ai.flights.recording import Claim, ClaimedFlight, Easing, Recording, StickHolder
@@ -66,6 +67,7 @@ def claimed(recording, real, course=""):
     return ClaimedFlight(recording, Claim(real.outcome, real.points, real.end), course), real
 
 
+@pytest.mark.slow
 def test_a_code_of_every_kind_is_read_to_the_same_flight_and_earns_the_same_alone_and_in_company(subtests):
     keys = [(kind, False) for kind in KINDS] + [(kind, True) for kind in ("plain", "three pads", "a leg of a descent")]
     rows = [flown(*key) for key in keys]

@@ -72,6 +72,7 @@ def test_each_jet_is_heard_on_its_own_side():
     assert right[1] > 2 * right[0]
 
 
+@pytest.mark.slow
 def test_the_busiest_moment_does_not_clip():
     """Even if the greatest samples of all met, at the volumes the game comes with."""
     settings = Settings()

@@ -189,6 +189,7 @@ def test_controls_hold_still_and_the_way_on_stays_in_sight_while_a_page_grows(op
     assert texts.LEARN_TO_CHAPTER in driver.hints()
 
 
+@pytest.mark.slow
 def test_what_its_six_tries_have_shown_leaves_chapter_6_its_title(open_game: Open):
     driver = open_game(ChapterScene, "choice")
     driver.resize((1280, 720))
