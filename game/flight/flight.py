@@ -6,7 +6,7 @@ from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
-from ai.environment import Bools, Doubles, Floats
+from ai.environment import Bools, Doubles
 from ai.flights.recording import Recording, StickHolder
 from ai.flights.verification import begun
 from ai.lander.descent import leg_of
@@ -72,7 +72,6 @@ class Flight(Generic[C]):
         self.recording, self.chooser = start.again(), chooser
         self.env = begun(self.recording)
         self.route = _route_of(start)
-        self.observation: Floats = self.env.observe()
         self.poses = Poses(self.env)
         self.choice, self.asked = Choice(_NOTHING, StickHolder.HUMAN), _NOTHING
         self._yours = 0
@@ -116,7 +115,6 @@ class Flight(Generic[C]):
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
         """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
         self.env.restore(moment)
-        self.observation = self.env.observe()
         self.recording.pushes[:] = source.pushes[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
@@ -138,7 +136,6 @@ class Flight(Generic[C]):
         if choice.likely is not None:
             self._aim(choice.likely)
         self.env.fly(np.array([push.action]), np.array([push.shares]))
-        self.observation = self.env.observe()
         self.recording.pushes.append(push)
         self.recording.hands.append(by)
         self._yours += by is StickHolder.HUMAN

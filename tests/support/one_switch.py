@@ -20,7 +20,7 @@ class SlowSwitch:
     def held(self, flight: Flight) -> bool:
         """Whether the switch is held in the next step."""
         if self._step % EVERY == 0:
-            x, y, _, vy, *_ = (flight.observation[0] / OBSERVATION_SCALE).tolist()
+            x, y, _, vy, *_ = (flight.env.observe()[0] / OBSERVATION_SCALE).tolist()
             thrust, late = flight.env.params.main_thrust, LATE / 60
             soon = vy - flight.env.gravity * late + thrust / 60 * sum(self._wishes)
             height = y - 0.8 * min(max(abs(x) - 2.5, 0.0), 6.0)
@@ -35,5 +35,5 @@ def one_switch(flight: Flight) -> Flight:
     """Fly to the end with one switch."""
     hand = SlowSwitch()
     while not flight.over:
-        flight.step(steered(KEYS[3 * hand.held(flight)], flight.observation))
+        flight.step(steered(KEYS[3 * hand.held(flight)], flight.env.observe()))
     return flight

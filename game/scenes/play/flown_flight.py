@@ -166,7 +166,7 @@ class FlownFlight:
             self._readouts = flight_readouts(flight.env)
             self.credit.prepare()
         self._help()
-        flight.step(steered(asked, flight.observation) if self._settings.one_switch else asked)
+        flight.step(steered(asked, flight.env.observe()) if self._settings.one_switch else asked)
         if self.ghost:
             self.ghost.step()
         if self._shadow:

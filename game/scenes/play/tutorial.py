@@ -113,7 +113,6 @@ class Tutorial(Challenge):
     def _place(self, flight: Flight[Any]) -> None:
         height, sinks, angle, aside = self.lesson.start
         flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, self._side * angle, 0.0]]))
-        flight.observation = flight.env.observe()
         flight.rest()
 
     def _leave_out(self, network: Policy | None) -> None:

@@ -28,7 +28,7 @@ class Heard:
 
     def to_the_end(self, pilot: ScriptedPilot | None = None) -> list[str]:
         while not self.flight.over:
-            self.step(int(pilot.act(self.flight.observation)[0]) if pilot else 0)
+            self.step(int(pilot.act(self.flight.env.observe())[0]) if pilot else 0)
         self.step(number=5)
         return self.sound.heard()
 

@@ -57,7 +57,7 @@ def test_without_a_time_limit_a_flight_outlasts_it_and_can_be_read_back():
     flight = begun(3, easing=Easing(untimed=True))
     pilot = ScriptedPilot()
     for _ in range(60 * 40):  # hovering
-        flight.step(KEYS[3 * bool(flight.env.velocity[0, 1] < 0) + int(pilot.act(flight.observation)[0]) % 3])
+        flight.step(KEYS[3 * bool(flight.env.velocity[0, 1] < 0) + int(pilot.act(flight.env.observe())[0]) % 3])
     assert flight.outcome is Outcome.FLYING
     assert flight.env.time[0] > 39
     record = flight_file.from_text(flight_file.to_text(record_of(flight)))

@@ -41,7 +41,7 @@ def flown(day: date) -> Flight:
     """A flight of a day's start by the scripted pilot, as if by hand."""
     flight, pilot = begun(day.toordinal(), pads=3), ScriptedPilot()
     while not flight.over:
-        flight.step(KEYS[int(pilot.act(flight.observation)[0])])
+        flight.step(KEYS[int(pilot.act(flight.env.observe())[0])])
     return flight
 
 
