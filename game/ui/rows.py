@@ -153,7 +153,7 @@ class SliderRow(RowWidget):
         super().__init__(NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
         self._step, self._figure = step, figure
-        self._track = (0.0, 1.0)
+        self._track, self._line = (0.0, 1.0), pygame.FRect()
 
     @property
     def fraction(self) -> float:
@@ -179,6 +179,11 @@ class SliderRow(RowWidget):
         else:
             self.shift(1)
 
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Take the mouse on its line: a click on its label sets nothing."""
+        elsewhere = event.type == pygame.MOUSEBUTTONDOWN and not self._line.collidepoint(event.pos)
+        return not elsewhere and super().process_event(event)
+
     def drag(self, x: float) -> None:
         (left, right), (low, high) = self._track, self.limits
         self.set(low + min(max((x - left) / (right - left), 0.0), 1.0) * (high - low))
@@ -198,7 +203,8 @@ class SliderRow(RowWidget):
             place = (cursor.right, words.baseline)
             canvas.text(self._figure(self.value), place, colour=self.colour, align="right", tabular=True)
         else:
-            self._track = (left, right)
+            self._track, high = (left, right), LEADING * cursor.size + 2 * STEP
+            self._line = pygame.FRect(left - STEP, middle - high / 2, cursor.right - left + STEP, high)
         cursor.y = words.y + LEADING * cursor.size
 
 

@@ -92,6 +92,12 @@ def test_mouse_works_every_widget(page: tuple[Driver, Page]):
     assert scene.log == ["go", True, 0.0, 1]
 
 
+def test_a_click_on_the_label_of_a_slider_sets_nothing(page: tuple[Driver, Page]):
+    game, scene = page
+    game.click((scene.slider.box.left + 4, scene.slider.box.centery))
+    assert scene.slider.value == 0.5
+
+
 def test_a_drag_goes_on_outside_and_a_press_let_go_outside_does_nothing(page: tuple[Driver, Page]):
     game, scene = page
     (left, right), y = scene.slider._track, scene.slider.box.centery
