@@ -148,6 +148,10 @@ def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]
     if outcomes.struck_side(env):  # neither down nor across, but the faster of the two is nearer to it
         name = max(("descent", "drift"), key=lambda each: readouts[each].fill or 0.0)
         figure = readouts[name].figure
+    elif cause is Cause.TILTED:  # which tells how fast it came down, too
+        speed = outcomes.touch_speed(env)
+        fell = replace(readouts["descent"], figure=f"{speed:.1f}", within=speed <= env.limits.touch_speed)
+        readouts = {**readouts, "descent": fell}
     return {**readouts, name: replace(readouts[name], figure=figure, within=False)}
 
 

@@ -102,6 +102,14 @@ def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
     assert seen > 20
 
 
+def test_one_that_tipped_over_came_down_as_fast_as_its_read_out_says():
+    pad = begun(1).env.ground.pads[0]
+    flight, readouts = dropped((pad.x, pad.top + 4, 0.0, -4.0, 1.5, 1.5))
+    card = outcome_card(flight.env)
+    assert cause_of(flight.env) is Cause.TILTED
+    assert f"at {readouts['descent'].figure} m/s" in card.reason
+
+
 def test_a_landing_and_a_soft_touch_mark_nothing():
     pad = begun(1).env.ground.pads[0]
     for x in (pad.x, pad.x + pad.width):
