@@ -122,17 +122,17 @@ class FlightsScene(_OverMoon):
     most = 360.0
 
     def __init__(self, context: Context, background: MenuBackground | None = None, today: date | None = None) -> None:
-        self._today = today or date.today()
+        self._given = today
         super().__init__(context, Pop, background)
 
     def _prepare(self) -> None:
         """Read how far the player is."""
-        context, settings = self.context, self.context.settings
+        context, settings, today = self.context, self.context.settings, self._given or date.today()
         records, days = Records(context.user_dir), Days(context.user_dir)
         entries = records.entries()
         gold = {entry.course for entry in entries if entry.medal == 3 and entry.alone}
-        attempt = days.attempts.get(self._today.isoformat())
-        self._yesterday = days.attempts.get((self._today - timedelta(days=1)).isoformat())
+        attempt = days.attempts.get(today.isoformat())
+        self._yesterday = days.attempts.get((today - timedelta(days=1)).isoformat())
         best = best_descent(entries)[0]
         self._figures = {
             "free": self._free(ladder_rung(settings, entries)),

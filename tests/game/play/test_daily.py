@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import date, timedelta
+from types import SimpleNamespace
 
 import numpy as np
 import pygame
@@ -62,6 +63,19 @@ def clipboard(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     held = [""]
     monkeypatch.setattr(pygame.scrap, "put_text", held.append)
     return held
+
+
+def test_a_page_that_was_open_at_midnight_tells_of_the_new_day(
+    open_game: Open, context: Context, written: list[str], monkeypatch: pytest.MonkeyPatch
+):
+    days = [YESTERDAY]
+    monkeypatch.setattr("game.scenes.menus.menu.date", SimpleNamespace(today=lambda: days[-1]))
+    driver = open_game(FlightsScene)
+    days.append(TODAY)
+    result = note(context, TODAY).result
+    driver.top.enter()
+    driver.frames(2)
+    assert result in written
 
 
 def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, context: Context):
