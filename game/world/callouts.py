@@ -17,6 +17,7 @@ from game.flight.outcomes import crash_reason
 from game.world.camera import ClearArea, View
 
 _ABOVE: Final = 2.0  # metres from the middle of a craft to the words
+_BELOW: Final = 10.0  # points of their cover below the baseline
 _EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
 _COVER: Final = 0.9  # opacity: the path behind the words is hardly seen
 _HEAD, _FOOT = 96.0, 120.0  # points that words keep from the upper edge, and from the lower one
@@ -43,8 +44,8 @@ def draw_words(canvas: Canvas, view: View, env: LanderEnv, pose: Doubles) -> Non
     width = canvas.text_width(text, size=SMALL, weight="medium") + 22
     seen = canvas.view
     x = min(max(x, seen.left + _EDGE + width / 2), seen.right - _EDGE - width / 2)
-    y = min(max(y, seen.top + _HEAD), seen.bottom - _FOOT)
-    canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), _COVER)
+    y = min(max(y - _BELOW, seen.top + _HEAD), seen.bottom - _FOOT)
+    canvas.panel((x - width / 2 - 12, y - 20, width + 24, 20 + _BELOW), _COVER)
     if crashed and not whole:
         canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn)
     else:

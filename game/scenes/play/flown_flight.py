@@ -257,7 +257,7 @@ class FlownFlight:
         if self._shadow and card:
             score = landing_score(self._shadow.env)
             words = texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING
-            card.compared[texts.CARD_NETWORK.format(who=self.credit.who)] = words if self._shadow_ended else "…"
+            card.compared[sentence(texts.CARD_NETWORK, self.credit.who)] = words if self._shadow_ended else "…"
         if self.ghost and card:
             card.compared[self.ghost.name] = self.ghost.result(self.flight.env)
 

@@ -18,7 +18,7 @@ from game.flight import networks
 from game.input.controls import Command
 from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Run, Table
-from game.ui.hints import HintRow, hint_lines
+from game.ui.hints import Hint, HintRow, hint_lines
 from game.ui.panel_scene import PanelScene, StillPicture
 
 if TYPE_CHECKING:
@@ -82,7 +82,9 @@ class PauseScene(PanelScene):
 
     def actions(self) -> Table:
         back = texts.HINT_BACK if self.ended else texts.HINT_RESUME
-        return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, back)]
+        ways = dict.fromkeys((self.context.controls.arrows, self.context.controls.arrows_aside))
+        moves = Hint(" ".join(ways), texts.HINT_MOVE)  # the columns stand side by side
+        return [moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, back)]
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         self._behind.draw(canvas)
