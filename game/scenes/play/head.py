@@ -236,6 +236,8 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     if flown.begun:
         opening = texts.TUTORIAL_LET_GO if flown.stuck else texts.WAITS_AGAIN
     keys = flight_hints(controls) if (opening or free) and said is None else []
+    if flown.context.settings.one_switch:
+        keys = keys[:1]  # the jets steer by themselves
     return replace(head, sentence=said or opening, lamp=lamp, controls=keys, help=helps, keys=chosen, means=means)
 
 
