@@ -47,6 +47,7 @@ class Context:
         apply_settings: applies the settings to the window and the sound, and saves them.
         film: the `game.export.film.Export` of a flight that goes on; None while there is none.
         pilot: the player's own file that flies, once it was chosen by name in this game.
+        chapter: key of the chapter of Learn that was left last; empty once its list has chosen it.
         reading: returns the window's canvas for text that flows, whose size and scale layouts go by.
 
     """
@@ -63,6 +64,7 @@ class Context:
     apply_settings: Callable[[], None] = lambda: None
     film: Any = None
     pilot: OwnPilot | None = None
+    chapter: str = ""
     reading: Callable[[], Canvas] = _page
 
     def unfold(self, part: str) -> None:

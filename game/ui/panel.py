@@ -108,7 +108,7 @@ class Column:
     def bar(self, share: Callable[[], float], colour: Colour = NET) -> None:
         self.add(lambda cursor: cursor.bar(share(), colour))
 
-    def picture(self, height: float | Callable[[float], float], draw: Callable[[Canvas, pygame.FRect], None]) -> None:
+    def picture(self, height: float | Callable[[float], float], draw: Callable[[Canvas, pygame.FRect], None]) -> Row:
         """Add a drawing of its own, over the whole column; its height may follow from the width."""
 
         def write(cursor: Cursor) -> None:
@@ -116,7 +116,7 @@ class Column:
             if cursor.canvas:
                 draw(cursor.canvas, box)
 
-        self.add(write)
+        return self.add(write)
 
     def gap(self, points: float = 2 * STEP) -> None:
         self.add(lambda cursor: cursor.gap(points))

@@ -259,10 +259,14 @@ class ChoiceRow(RowWidget):
         if self._on_open and (self.ringed or under == _ALL):
             return self._on_open()
         if self.ringed:
-            self.choose((self.index + 1) % len(self.options))
+            if not self.by_arrows:
+                self.advance()
         elif under is not None:
             self.choose(under)
         return None
+
+    def advance(self) -> None:
+        self.choose((self.index + 1) % len(self.options))
 
     def shift(self, direction: int) -> bool:
         before = self.index

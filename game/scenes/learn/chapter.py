@@ -41,6 +41,7 @@ class Chapter(ABC):
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
+        judged: which of the settings `verdict` is about; empty where it is about all.
         model: what is touched.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         changed: set when it shows something else than before, or has other controls; the scene describes them anew.
@@ -50,6 +51,7 @@ class Chapter(ABC):
     key: ClassVar[str]
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
+    judged = ""
     model: Model
 
     def __init__(self, context: Context) -> None:

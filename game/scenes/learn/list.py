@@ -23,7 +23,7 @@ from game.ui.panel_scene import PanelScene
 from game.ui.widget import OnPress
 
 _KEYS: Final = tuple(PATH)
-_LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
+_LEAST, _AROUND = 300.0, 230.0  # points of a column, and of what is seen with the list
 _PITCH: Final = 34.0  # of a row of the list
 
 
@@ -38,12 +38,14 @@ class LearnScene(PanelScene):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self.enter()
+        context.chapter = ""
+        self.chosen = next((key for key in PATH if not is_done(context.settings, key)), FIRST)
+        self.build()
         self.form.focus(self.form.widgets[1])  # the list
 
     def enter(self) -> None:
-        """Choose the first chapter that is not done."""
-        self.chosen = next((key for key in PATH if not is_done(self.context.settings, key)), FIRST)
+        """Choose the chapter that was left last."""
+        self.chosen, self.context.chapter = self.context.chapter or self.chosen, ""
         self.build()
 
     def actions(self) -> Table:
@@ -83,7 +85,8 @@ class LearnScene(PanelScene):
                           colour=MUTE if done else INK)  # fmt: skip
 
     def _row(self, key: str) -> Row:
-        return texts.LEARN[key]["title"], texts.LEARN_DONE if is_done(self.context.settings, key) else ""
+        title = f"{_KEYS.index(key) + 1}   {texts.LEARN[key]['title']}"
+        return title, texts.LEARN_DONE if is_done(self.context.settings, key) else ""
 
     def _choose(self, index: int) -> None:
         self.chosen = _KEYS[index]

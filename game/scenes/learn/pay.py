@@ -109,6 +109,10 @@ class PayChapter(Chapter):
         self.trial: Trial | None = None
         self._swarm: SwarmState | None = None
 
+    @property
+    def judged(self) -> str:  # type: ignore[override]
+        return texts.LEARN_PAY_NAMES[ASKED]
+
     def close(self) -> None:
         if self._worker:
             self._worker.close()
@@ -121,7 +125,8 @@ class PayChapter(Chapter):
 
     def controls(self, column: Column) -> None:
         keys = list(PAYS)
-        column.choice("", [texts.LEARN_PAY_NAMES[key] for key in keys], keys.index(self.pay), self.choose)
+        names = [texts.LEARN_PAY_NAMES[key] for key in keys]
+        column.choice("", names, keys.index(self.pay), self.choose).by_arrows = True
         column.text(self._paid, size=SMALL, colour=HUMAN)
         column.button(texts.LEARN_PAY_STOP if self.learning else texts.LEARN_PAY_TRAIN, self.train)
 
@@ -148,6 +153,8 @@ class PayChapter(Chapter):
             self.close()
             return
         self._clear()
+        self.results.pop(self.pay, None)
+        self.tried = bool(self.results)
         self._worker = Worker(LanderSession.live, config_of(PAYS[self.pay]), self._runs)
         self._runs += 1
 

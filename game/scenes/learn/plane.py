@@ -132,7 +132,7 @@ class PlaneChapter(Chapter):
 
     def controls(self, column: Column) -> None:
         at = UNITS.index(self.model.units)
-        column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), at, self.model.choose)
+        column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), at, self.model.choose).by_arrows = True
         column.button(texts.LEARN_PLANE_AGAIN, self.model.begin)
 
     def why(self) -> str:

@@ -109,7 +109,7 @@ class RunsChapter(Chapter):
 
     def starter(self, column: Column, choices: Sequence[str], label: str) -> None:
         """Add what can be chosen, and the button that starts the runs; it is lit while none goes on."""
-        column.choice("", choices, self.choice, self.choose)
+        column.choice("", choices, self.choice, self.choose).by_arrows = True
         column.button(label, self.start, colour=MUTE if self.running else INK)
 
     def below(self, column: Column) -> None:
@@ -147,12 +147,17 @@ class DuelChapter(RunsChapter):
     Attributes:
         quantity: the field of `SmallState` that the charts show.
         ticks: its values beside them, in rising order; the last is at their top.
+        results: by choice, what its latest runs have shown.
 
     """
 
     shape = 0.6
     quantity: ClassVar[str]
     ticks: ClassVar[Sequence[float]]
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.results: dict[int, str] = {}
 
     @abstractmethod
     def names(self) -> Sequence[str]:
@@ -165,6 +170,25 @@ class DuelChapter(RunsChapter):
     @abstractmethod
     def figure(self, value: float) -> str:
         """Write a value of the quantity."""
+
+    @abstractmethod
+    def shown(self) -> str:
+        """Return what the runs that are on the screen have shown."""
+
+    @property
+    def judged(self) -> str:  # type: ignore[override]
+        return self.names()[1]
+
+    def start(self) -> None:
+        """Start the runs, and forget what the last ones of this choice have shown."""
+        self.results.pop(self.choice, None)
+        if self.choice == 0:
+            self.came = None
+        super().start()
+
+    def why(self) -> str:
+        self.results[self.flown] = self.shown()
+        return " ".join(self.results.values())
 
     @property
     def landed(self) -> tuple[float, ...]:
@@ -190,7 +214,7 @@ class DuelChapter(RunsChapter):
                 draw_curve(canvas, chart, heights, colour, self.LENGTH)
                 if (getattr(state, self.quantity) or 0.0) > top:  # off the chart
                     at = chart.left + chart.width * (len(self.states) - 1) / self.LENGTH
-                    canvas.marker("triangle", (at, chart.top), 10, colour)
+                    canvas.marker("triangle", (at, chart.top + 10), 10, colour)
                 canvas.text(self.caption(state), (left, sky.bottom + 20), size=SMALL, tabular=True, room=half)
 
 
@@ -236,7 +260,7 @@ class TargetChapter(DuelChapter):
             kept = 0 if other > usual + _MORE else 1 if other >= usual - _MORE else 3
             self.came = 2 if self.peaks[1] > BOUND else kept
 
-    def why(self) -> str:
+    def shown(self) -> str:
         (usual, other), (least, peak) = map(percent, self.landed), map(self.figure, self.peaks)
         done = self.states[-1][0].decisions  # the values go on while this stands there
         name = self.names()[self.flown + 1]
@@ -276,7 +300,7 @@ class DaringChapter(DuelChapter):
             never, other = (landed >= _LEARNED for landed in self.landed)
             self.came = 2 if never and other else 0 if never else 1 if other else 3
 
-    def why(self) -> str:
+    def shown(self) -> str:
         never, other = map(percent, self.landed)
         share = percent(DARING[self.flown + 1])
         return texts.LEARN_DARING_WHY.format(share=share, never=never, other=other, decisions=self.LENGTH)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
+import pygame
+
 from game.core import texts
 from game.core.scene import Push, Replace, Route, Transition
 from game.core.source import source_of
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE, Colour
 from game.explain.code_listing import add_listing
-from game.input.controls import Command
+from game.input.controls import Command, translate
 from game.scenes.learn.path import FIRST, PATH, chapter_type, following
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -19,7 +21,7 @@ from game.ui.panel_scene import PanelScene
 
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
-_OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
+_OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given, and what holds in general
 _AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
 _LISTING: Final = 320.0  # height of a listing
 
@@ -49,6 +51,7 @@ class ChapterScene(PanelScene):
         self.reword()
 
     def close(self) -> None:
+        self.context.chapter = self.key
         self.chapter.close()
 
     def begin(self, guess: int | None = None) -> None:
@@ -56,17 +59,18 @@ class ChapterScene(PanelScene):
         self.guess, self.begun = guess, True
         self.build()
         self.form.focus(self.form.widgets[0])
+        self._show_picture()
 
     def reword(self) -> None:
+        self.finding, self.came = "", None
         if self.chapter.tried:
             self._find()
         self.build()
 
     def _find(self) -> None:
         """Say what the tries have shown; a chapter whose question they have answered is done."""
-        self.finding, came = self.chapter.why(), self.chapter.verdict()
-        if came is not None:
-            self.came = came
+        self.finding, self.came = self.chapter.why(), self.chapter.verdict()
+        if self.came is not None:
             self.context.settings.learnt[self.key] = {"done": True}
             self.context.apply_settings()
 
@@ -77,6 +81,21 @@ class ChapterScene(PanelScene):
     def _go_on(self) -> Transition:
         return Replace(Route("chapter", (following(self.key),)))
 
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        outcome, command = super().handle_event(event), translate(event)
+        changes = self.form.focused and self.form.focused.by_arrows
+        if command is Command.CONFIRM or (changes and command in (Command.LEFT, Command.RIGHT)):
+            self._show_picture()
+        return outcome
+
+    def _show_picture(self) -> None:
+        """Scroll to the picture that a press changes, as far as what was pressed stays in sight."""
+        self.lay_out()
+        focused, room = self.form.focused, self.panel.box
+        if self.begun and not self.in_code and focused:
+            most = min(self._picture.box.top, focused.box.top - 8.0) - room.top
+            self.panel.scroll(min(most, max(self._picture.box.bottom - room.bottom, 0.0)))
+
     def update(self) -> Transition | None:
         chapter, before = self.chapter, self.came
         if self.begun:
@@ -84,7 +103,7 @@ class ChapterScene(PanelScene):
         if chapter.changed and not any(widget.held for widget in self.form.widgets):  # or a drag would end
             chapter.changed = False
             self.reword()
-            if self.came != before:
+            if self.came not in (before, None):
                 self.panel.scroll(self.panel.height)  # to what the verdict has brought
         return super().update()
 
@@ -102,7 +121,7 @@ class ChapterScene(PanelScene):
         if self.in_code:
             self._describe_listing(right)
         else:
-            right.picture(self._high, self.chapter.draw)
+            self._picture = right.picture(self._high, self.chapter.draw)
             right.gap(4)
             self.chapter.below(right)
         if self.begun and self.chapter.code():
@@ -112,7 +131,7 @@ class ChapterScene(PanelScene):
             panel.line()
             own, general = panel.beside(_SHARES, _LEAST, _APART)
             own.text(self.finding, size=_BODY)
-            general.text(words["why"], size=_BODY, colour=MUTE)
+            general.text(words["why"], size=_BODY, colour=_OPEN)
             general.button(words["door"], lambda: Push(self.chapter.door))
 
     def _high(self, width: float) -> float:
@@ -138,7 +157,8 @@ class ChapterScene(PanelScene):
             column.text(texts.LEARN_ANSWERS[self.key][guess], colour=HUMAN)
         if came is not None:
             palette, right = self.context.reading().palette, came == guess
-            column.caption(texts.LEARN_CAME[right])
+            judged = self.chapter.judged
+            column.caption(texts.LEARN_CAME[right] + f" · {judged}" * bool(judged))
             colour = INK if guess is None else palette.good if right else palette.warn
             column.text(texts.LEARN_ANSWERS[self.key][came], colour=colour)
         elif guess is not None and self.finding:

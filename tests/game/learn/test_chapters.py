@@ -381,6 +381,9 @@ def test_two_agents_learn_and_a_guess_gets_its_verdict_from_this_very_run(
     else:
         came = {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
         assert chapter.verdict() == came
+    assert chapter.judged == chapter.names()[1], "whatever is tried next"
+    chapter.start()
+    assert chapter.verdict() is None, "the new run of the question has shown nothing yet"
 
 
 def _percents(sentence: str) -> list[str]:

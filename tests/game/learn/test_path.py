@@ -52,10 +52,24 @@ def test_the_list_opens_on_the_first_chapter_that_is_not_done_and_leads_into_it(
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
     assert isinstance(driver.top, LearnScene)
+    assert driver.top.chosen == KEYS[3], "the one that was left"
     save_settings(context, learnt={key: {"done": True} for key in KEYS})
     assert open_game(LearnScene).top.chosen == KEYS[0]
     for learnt in ([], 7, "x"):
         assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
+
+
+def test_enter_keeps_a_choice_and_shows_the_picture_that_it_is_about(open_game: Open, context: Context):
+    save_settings(context, text_size="largest")
+    driver = open_game(ChapterScene, "daring")
+    driver.resize((1024, 768))
+    driver.key(pygame.K_RETURN)
+    scene = driver.top
+    scene.panel.scroll(-scene.panel.height)
+    driver.keys(pygame.K_RIGHT, pygame.K_RIGHT, pygame.K_RETURN)
+    assert scene.chapter.choice == 2
+    assert scene._picture.box.top < scene.panel.box.centery
+    assert scene.form.focused.box.top >= scene.panel.box.top
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -84,7 +98,13 @@ def test_a_chapter_grows_in_two_languages_and_leads_on(open_game: Open, context:
         scene.chapter.found()
         driver.frames(2)
         assert done(driver, key), "a later try that answers nothing takes nothing back"
-        assert texts.LEARN_CAME[came != 0] in written(driver, monkeypatch)
+        said = written(driver, monkeypatch)
+        assert (texts.LEARN_UNSETTLED if came is None else texts.LEARN_CAME[came == 1]) in said
+    scene.chapter.tried, scene.chapter.changed = False, True
+    driver.frames(2)
+    assert not scene.finding, "another try has shown nothing yet"
+    scene.chapter.found()
+    driver.frames(2)
     driver.press_on(words["door"])
     driver.frames(2)
     assert driver.top_name not in ("ChapterScene", "ErrorScene")
