@@ -86,13 +86,13 @@ class MemoryChapter(RunsChapter):
         top = box.top + _WALL * box.height + 30
         for side, (name, count) in enumerate(((day, SMALL_RUN.num_envs), (texts.LEARN_MEMORY_TESTS, TESTED))):
             area = pygame.FRect(box.left + side * (half + 32), top, half, box.bottom - top)
-            canvas.text(name, (area.left, top - 6), size=SMALL, colour=(NET, INK)[side], room=half - 96)
+            canvas.text(name, (area.left, top - 6), size=SMALL, colour=(NET, INK)[side], room=half)
             flown = None if state is None else state.tested if side else state.flown
             draw_side_by_side(canvas, area, flown, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
             if share is not None:
                 words = texts.LEARN_RUNS_LANDED.format(share=percent(share))
-                canvas.text(words, (area.right, top - 6), size=SMALL, align="right", tabular=True)
+                canvas.text(words, (area.right - 10, area.top + 20), size=SMALL, align="right", tabular=True)
 
     def _draw_wall(self, canvas: Canvas, box: pygame.FRect, state: SmallState | None) -> None:
         """Draw the cells that are held, light those from which the latest step drew, and mark where today begins."""
