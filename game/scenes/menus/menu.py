@@ -130,14 +130,15 @@ class FlightsScene(_OverMoon):
         context, settings, today = self.context, self.context.settings, self._given or date.today()
         records, days = Records(context.user_dir), Days(context.user_dir)
         entries = records.entries()
-        gold = {entry.course for entry in entries if entry.medal == 3 and entry.alone}
+        won = {entry.course for entry in entries if entry.medal and entry.alone} & MISSIONS.keys()
+        gold = won.intersection(entry.course for entry in entries if entry.medal == 3 and entry.alone)
         attempt = days.attempts.get(today.isoformat())
         self._yesterday = days.attempts.get((today - timedelta(days=1)).isoformat())
         best = best_descent(entries)[0]
         self._figures = {
             "free": self._free(ladder_rung(settings, entries)),
             "day": attempt.result if attempt else texts.DAYS_NOT_FLOWN,
-            "missions": texts.FLIGHTS_GOLD.format(gold=len(gold & MISSIONS.keys()), count=len(MISSIONS)),
+            "missions": texts.FLIGHTS_GOLD.format(won=len(won), gold=len(gold), count=len(MISSIONS)),
             "descent": texts.DESCENT_LEGS.format(count=best) if best else "",
             "logbook": texts.FLIGHTS_COUNT.format(count=len(entries)) if entries else "",
         }

@@ -34,7 +34,7 @@ _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
 _LEAN: Final = 0.15  # rad
 _UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
 _STOP: Final = 0.5  # seconds before the craft is upright, from which on its turn is to be stopped
-_SLOW, _RISING = 1.0, 0.3  # m/s down that are slow, and up from which on the craft rises instead of braking
+_SLOW, _RISING = 2.0, 0.3  # m/s down that a landing allows, and up from which on the craft rises, not brakes
 NETWORK, COPILOT = "network", "copilot"
 
 
@@ -65,7 +65,7 @@ def _stands_upright(flight: Flight[Crew]) -> bool:
 
 LESSONS: Final = (
     Lesson("fire", lambda flight: bool(flight.env.actions[0] >= 3), 24, (14.0, 0.0, 0.0, 0.0)),
-    Lesson("brake", lambda flight: bool(-_SLOW <= flight.env.velocity[0, 1] <= _RISING), 50, (16.0, -2.0, 0.0, 0.0)),
+    Lesson("brake", lambda flight: bool(-_SLOW <= flight.env.velocity[0, 1] <= _RISING), 90, (16.0, -2.0, 0.0, 0.0)),
     Lesson("lean", lambda flight: bool(flight.env.tilt[0] > _LEAN)),
     Lesson("upright", _stands_upright, 20, (17.0, 0.0, 0.3, 0.0)),
     Lesson("land", start=(8.0, 0.0, 0.0, 0.0)),
@@ -132,7 +132,6 @@ class Tutorial(Challenge):
         sound, settings = self.follow(flown.flight), flown.context.settings
         if self.flown and not settings.first_flown:
             settings.first_flown = True
-            settings.help = "guard" if settings.help == "off" else settings.help  # as it is taught next
         if (self.rules.through or self.flown) and not settings.tutored:
             settings.tutored = True
             flown.context.apply_settings()
