@@ -15,7 +15,7 @@ from game.ui.hints import Hint, HintRow
 
 _SAID: Final = 32.0  # points below a chart, for what is said of it
 _SIDE: Final = (320.0, 422.0)  # width of the panel at least and at most
-MARGIN: Final = 32.0  # of the panel at either side
+PANEL_MARGIN: Final = 32.0  # of the panel at either side
 _WIDE: Final = 680.0  # points of a window from which the panel stands beside the display
 _BELOW: Final = 0.4  # share of a tall window for the panel
 _MARGIN: Final = 28.0
@@ -70,7 +70,7 @@ def _title_width(place: Layout) -> float:
 def hint_row(place: Layout, hints: Sequence[Hint], *, titled: bool) -> HintRow:
     """Return the hints that stand beside the title, or without one, in the corner of the panel."""
     if not titled:
-        return HintRow(hints, (place.panel.right - MARGIN, place.panel.bottom - 22), from_right=True)
+        return HintRow(hints, (place.panel.right - PANEL_MARGIN, place.panel.bottom - 22), from_right=True)
     return HintRow(hints, (_TITLE[0] + _title_width(place) - 16, _TITLE[1] + 30), from_right=True)
 
 

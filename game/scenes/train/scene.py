@@ -19,7 +19,7 @@ from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train import knobs
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.landers import LanderView
-from game.scenes.train.layout import MARGIN, Layout, hint_row, is_low, layout
+from game.scenes.train.layout import PANEL_MARGIN, Layout, hint_row, is_low, layout
 from game.training.run import PACES, TrainingRun
 from game.training.run_settings import RunSettings
 from game.ui.actions import Action, Table
@@ -126,7 +126,7 @@ class TrainScene(FormScene):
     def _room(self) -> pygame.FRect:
         """Room of the panel, with its foot."""
         panel = self._place.panel
-        return panel.inflate(-2 * MARGIN, -2 * min(20.0, 0.07 * panel.height))
+        return panel.inflate(-2 * PANEL_MARGIN, -2 * min(20.0, 0.07 * panel.height))
 
     @property
     def _place(self) -> Layout:
