@@ -157,8 +157,8 @@ class ChapterScene(PanelScene):
             column.text(texts.LEARN_ANSWERS[self.key][guess], colour=HUMAN)
         if came is not None:
             palette, right = self.context.reading().palette, came == guess
-            judged = self.chapter.judged
-            column.caption(texts.LEARN_CAME[right] + f" · {judged}" * bool(judged))
+            said, judged = texts.LEARN_CAME[right], self.chapter.judged
+            column.caption(f"{said} · {judged}" if judged else said)
             colour = INK if guess is None else palette.good if right else palette.warn
             column.text(texts.LEARN_ANSWERS[self.key][came], colour=colour)
         elif guess is not None and self.finding:
