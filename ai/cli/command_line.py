@@ -41,10 +41,15 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {readable(' '.join(message.split()))} (see {self.prog} --help)\n")
 
 
-def fail(message: str) -> int:
-    """Say what went wrong, if anybody still listens, and return the exit code of a failure."""
+def report(message: str) -> None:
+    """Print to standard error, if anybody still listens."""
     with suppress(OSError):
         print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
+
+
+def fail(message: str) -> int:
+    """Say what went wrong, and return the exit code of a failure."""
+    report(message)
     return FAILED
 
 

@@ -89,7 +89,7 @@ def _run(study: Study, address: str | None) -> tuple[list[int], dict[int, str]]:
                 bar.update(finished)
                 if finished and bar.disable:
                     bar.n = len(study.trials)
-                    cli.fail(f"{bar.n} of {study.design.trials} trials: {words or 'none has a result yet'}")
+                    cli.report(f"{bar.n} of {study.design.trials} trials: {words or 'none has a result yet'}")
 
             return stop, run(study, workers, stop, report)
 

@@ -151,7 +151,7 @@ def _paid_by(training: Any, path: Path) -> Callable[[], None]:
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
     """Take over the live settings wanted for a resumed run; raises ValueError, with their names, for others."""
     if training.lost:
-        cli.fail(f"{arguments.resume}: {training.lost}")
+        cli.report(f"{arguments.resume}: {training.lost}")
     fixed = training.config.fixed_differences(wanted)
     if arguments.seed not in (None, training.seed):
         fixed.append("seed")
@@ -216,12 +216,12 @@ def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None
             bar.set_postfix_str(words, refresh=False)
             if bar.disable and time.monotonic() >= line_at:
                 line_at = time.monotonic() + _LINE_SECONDS
-                cli.fail(f"training {share:.0%}: {words}")
+                cli.report(f"training {share:.0%}: {words}")
             if stop:
                 break
             for failure in keeper.go_on(training.clock()):
                 bar.clear()
-                cli.fail(f"could not write to {output}: {failure.problem}; training goes on")
+                cli.report(f"could not write to {output}: {failure.problem}; training goes on")
     keeper.wait()
 
 
@@ -236,6 +236,6 @@ def _kept(training: Run, output: Path, *, final: bool) -> tuple[Path, dict[str, 
     try:
         return output, save(training, output, final=final)
     except FileExistsError as error:
-        cli.fail(str(error))
+        cli.report(str(error))
         beside = free_path(output.parent, output.name)
         return beside, save(training, beside, final=final)
